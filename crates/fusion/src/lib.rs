@@ -1,0 +1,1 @@
+//! Pipelines that join and blend triangle meshes

@@ -1,0 +1,1 @@
+//! Reads and writes OBJ, STL, PLY, OFF, glTF and 3MF triangle meshes

@@ -1,0 +1,1 @@
+//! Closest points, rays and overlapping triangle pairs on triangle meshes

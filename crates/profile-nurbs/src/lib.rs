@@ -1,0 +1,1 @@
+//! Rational B-spline curves and rolling-ball blend profiles

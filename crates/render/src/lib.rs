@@ -1,0 +1,1 @@
+//! Still pictures of triangle meshes by ray casting

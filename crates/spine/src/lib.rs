@@ -1,0 +1,1 @@
+//! Rolling-ball spine and linkage curves on triangle meshes

@@ -1,0 +1,1 @@
+//! Exact-predicate triangle-mesh intersection, cutting and booleans
