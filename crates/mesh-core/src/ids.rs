@@ -77,13 +77,15 @@ impl HalfedgeId {
 
     /// The next halfedge around the same triangle.
     #[inline]
+    #[must_use]
     pub const fn next(self) -> Self {
         Self(if self.0 % 3 == 2 { self.0 - 2 } else { self.0 + 1 })
     }
 
     /// The previous halfedge around the same triangle.
     #[inline]
+    #[must_use]
     pub const fn prev(self) -> Self {
-        Self(if self.0 % 3 == 0 { self.0 + 2 } else { self.0 - 1 })
+        Self(if self.0.is_multiple_of(3) { self.0 + 2 } else { self.0 - 1 })
     }
 }

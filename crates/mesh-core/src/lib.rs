@@ -15,6 +15,7 @@
 //! | `mesh.rs` | `TriMesh`, passive positions and faces |
 //! | `connected.rs`, `corner_table.rs` | `Connected`, the one place that decides manifoldness |
 //! | `origin.rs` | provenance of vertices and faces |
+//! | `surface_point.rs` | a point on a mesh, by vertex, edge or face |
 //! | `bounds.rs` | axis-aligned boxes |
 //! | `watch.rs` | progress and cancellation |
 //! | `shapes/` | procedural shapes for tests and fixtures |
@@ -27,6 +28,7 @@ pub mod map;
 mod mesh;
 mod origin;
 pub mod shapes;
+mod surface_point;
 mod traits;
 mod watch;
 
@@ -36,5 +38,6 @@ pub use ids::{EdgeId, FaceId, HalfedgeId, VertexId};
 pub use map::{CornerMap, EdgeMap, FaceMap, IdMap, VertexMap};
 pub use mesh::TriMesh;
 pub use origin::{FaceOrigin, Origins, VertexOrigin};
+pub use surface_point::SurfacePoint;
 pub use traits::{Adjacency, EditObserver, Faces, MeshSink, Positions, Ring};
 pub use watch::{Cancelled, Watch};
