@@ -1,14 +1,17 @@
-//! Matching of opposite halfedges by counting sort on the lower vertex of each edge.
+//! Matching of opposite halfedges, in parallel, and the one fan of each vertex.
 
 use crate::connected::NotManifold;
+use crate::edge_groups::{range_len, visit_edges};
 use crate::ids::{FaceId, HalfedgeId, VertexId};
 use crate::traits::{Faces, Positions};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU32, Ordering};
 
-const NONE: u32 = u32::MAX;
+pub(crate) const NONE: u32 = u32::MAX;
 
 /// Twin of each halfedge and one outgoing halfedge of each vertex (`u32::MAX` for none).
-pub(crate) fn connect<M: Faces + Positions>(mesh: &M) -> Result<(Vec<u32>, Vec<u32>), NotManifold> {
-    let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
+#[expect(clippy::result_large_err, reason = "built once per mesh, and its lists are public")]
+pub(crate) fn connect<M: Faces + Positions + Sync>(mesh: &M) -> Result<(Vec<u32>, Vec<u32>), NotManifold> {
     let mut defects = NotManifold {
         edges: vec![],
         misoriented: vec![],
@@ -18,21 +21,20 @@ pub(crate) fn connect<M: Faces + Positions>(mesh: &M) -> Result<(Vec<u32>, Vec<u
         place: None,
     };
     // `3·f + corner` must stay below the `NONE` mark.
-    if faces >= (NONE / 3) as usize {
+    if mesh.face_count() >= (NONE / 3) as usize {
         defects.out_of_range.push(FaceId(NONE / 3));
         return Err(defects);
     }
-    for f in mesh.face_ids() {
-        let [a, b, c] = mesh.corners(f);
-        if [a, b, c].iter().any(|v| v.index() >= vertices) {
-            defects.out_of_range.push(f);
-        } else if a == b || b == c || c == a {
-            defects.degenerate.push(f);
-        }
-    }
+    let faces = mesh.face_count() as u32;
+    defects.out_of_range =
+        (0..faces).into_par_iter().map(FaceId).filter(|&f| !in_range(mesh, mesh.corners(f))).collect();
+    defects.degenerate = (0..faces)
+        .into_par_iter()
+        .map(FaceId)
+        .filter(|&f| in_range(mesh, mesh.corners(f)) && !distinct(mesh.corners(f)))
+        .collect();
     if defects.out_of_range.is_empty() && defects.degenerate.is_empty() {
-        let buckets = Buckets::fill(mesh);
-        let twins = buckets.pair(mesh, &mut defects);
+        let twins = pair(mesh, &mut defects);
         if defects.edges.is_empty() && defects.misoriented.is_empty() {
             let outgoing = fans(mesh, &twins, &mut defects);
             if defects.vertices.is_empty() {
@@ -50,84 +52,106 @@ pub(crate) fn connect<M: Faces + Positions>(mesh: &M) -> Result<(Vec<u32>, Vec<u
     Err(defects)
 }
 
-/// Halfedges grouped by the lower vertex of their edge, in halfedge order within a group.
-struct Buckets {
-    starts: Vec<u32>,
-    halfedges: Vec<(u32, u32)>, // (higher vertex, halfedge)
+pub(crate) fn in_range<M: Faces>(mesh: &M, c: [VertexId; 3]) -> bool {
+    c[0].max(c[1]).max(c[2]).index() < mesh.vertex_count()
 }
 
-impl Buckets {
-    fn fill<M: Faces>(mesh: &M) -> Self {
-        let mut starts = vec![0u32; mesh.vertex_count() + 1];
-        for f in mesh.face_ids() {
-            let c = mesh.corners(f);
-            for k in 0..3 {
-                starts[c[k].min(c[(k + 1) % 3]).index() + 1] += 1;
-            }
-        }
-        for i in 1..starts.len() {
-            starts[i] += starts[i - 1];
-        }
-        let mut next = starts.clone();
-        let mut halfedges = vec![(0, 0); 3 * mesh.face_count()];
-        for f in mesh.face_ids() {
-            let c = mesh.corners(f);
-            for k in 0..3 {
-                let (a, b) = (c[k], c[(k + 1) % 3]);
-                let slot = &mut next[a.min(b).index()];
-                halfedges[*slot as usize] = (a.max(b).0, HalfedgeId::new(f, k).0);
-                *slot += 1;
-            }
-        }
-        Self { starts, halfedges }
-    }
+pub(crate) fn distinct([a, b, c]: [VertexId; 3]) -> bool {
+    a != b && b != c && c != a
+}
 
-    fn pair<M: Faces>(mut self, mesh: &M, defects: &mut NotManifold) -> Vec<u32> {
-        let mut twins = vec![NONE; self.halfedges.len()];
-        for low in 0..self.starts.len() - 1 {
-            let group = &mut self.halfedges[self.starts[low] as usize..self.starts[low + 1] as usize];
-            group.sort_unstable();
-            for edge in group.chunk_by(|a, b| a.0 == b.0) {
-                match *edge {
-                    [_] => {}
-                    [(_, h), (_, t)] if mesh.tail(HalfedgeId(h)) != mesh.tail(HalfedgeId(t)) => {
-                        twins[h as usize] = t;
-                        twins[t as usize] = h;
-                    }
-                    [(high, _), _] => defects.misoriented.push([VertexId(low as u32), VertexId(high)]),
-                    _ => defects.edges.push([VertexId(low as u32), VertexId(edge[0].0)]),
+/// Offending edges: non-manifold, misoriented.
+type Lists = (Vec<[VertexId; 2]>, Vec<[VertexId; 2]>);
+
+fn pair<M: Faces + Sync>(mesh: &M, defects: &mut NotManifold) -> Vec<u32> {
+    // Relaxed atomics: every halfedge lies in one edge, so no two tasks write the same slot.
+    let twins: Vec<AtomicU32> =
+        (0..3 * mesh.face_count() as u32).into_par_iter().map(|_| AtomicU32::new(NONE)).collect();
+    let lists = visit_edges(
+        mesh,
+        |_| true,
+        |(edges, misoriented): &mut Lists, group| match group.len() {
+            1 => {}
+            2 => {
+                let (h, t) = (group.halfedge(0), group.halfedge(1));
+                if mesh.tail(h) == mesh.tail(t) {
+                    misoriented.push(group.ends);
+                } else {
+                    twins[h.index()].store(t.0, Ordering::Relaxed);
+                    twins[t.index()].store(h.0, Ordering::Relaxed);
                 }
             }
-        }
-        twins
+            _ => edges.push(group.ends),
+        },
+    );
+    for (edges, misoriented) in lists {
+        defects.edges.extend(edges);
+        defects.misoriented.extend(misoriented);
     }
+    defects.edges.sort_unstable();
+    defects.misoriented.sort_unstable();
+    twins.into_iter().map(AtomicU32::into_inner).collect()
 }
 
 /// Picks the first halfedge of each fan and finds vertices with more than one fan.
-fn fans<M: Faces>(mesh: &M, twins: &[u32], defects: &mut NotManifold) -> Vec<u32> {
+fn fans<M: Faces + Sync>(mesh: &M, twins: &[u32], defects: &mut NotManifold) -> Vec<u32> {
+    let range = range_len(mesh);
     let mut outgoing = vec![NONE; mesh.vertex_count()];
-    let mut degree = vec![0u32; mesh.vertex_count()];
-    for f in mesh.face_ids() {
-        for (k, v) in mesh.corners(f).into_iter().enumerate() {
-            let h = HalfedgeId::new(f, k);
-            degree[v.index()] += 1;
-            if outgoing[v.index()] == NONE || twins[h.index()] == NONE {
-                outgoing[v.index()] = h.0;
+    let seen: usize = outgoing
+        .par_chunks_mut(range)
+        .enumerate()
+        .map(|(task, chunk)| {
+            lowest_outgoing(mesh, (task * range) as u32, chunk);
+            chunk.iter_mut().map(|h| turn_to_start(twins, h)).sum::<usize>()
+        })
+        .sum();
+    // Each fan's corners were counted once; corners left over belong to second fans.
+    if seen != twins.len() {
+        let mut degree = vec![0; mesh.vertex_count()];
+        for f in mesh.face_ids() {
+            for v in mesh.corners(f) {
+                degree[v.index()] += 1;
             }
         }
-    }
-    for v in 0..outgoing.len() {
-        let (mut h, mut seen) = (outgoing[v], 0);
-        while h != NONE {
-            seen += 1;
-            h = twins[HalfedgeId(h).prev().index()];
-            if h == outgoing[v] {
-                break;
-            }
-        }
-        if seen != degree[v] {
-            defects.vertices.push(VertexId(v as u32));
-        }
+        let broken = |&v: &VertexId| turn_to_start(twins, &mut { outgoing[v.index()] }) != degree[v.index()];
+        defects.vertices = mesh.vertex_ids().filter(broken).collect();
     }
     outgoing
+}
+
+fn lowest_outgoing<M: Faces>(mesh: &M, low: u32, chunk: &mut [u32]) {
+    for f in mesh.face_ids() {
+        for (k, v) in mesh.corners(f).into_iter().enumerate() {
+            if let Some(slot) = chunk.get_mut(v.0.wrapping_sub(low) as usize) {
+                *slot = (*slot).min(HalfedgeId::new(f, k).0);
+            }
+        }
+    }
+}
+
+/// Moves `start` clockwise to the boundary, if its fan has one, and returns how many corners the fan has.
+pub(crate) fn turn_to_start(twins: &[u32], start: &mut u32) -> usize {
+    if *start == NONE {
+        return 0;
+    }
+    let (first, mut count) = (*start, 1);
+    loop {
+        let twin = twins[*start as usize];
+        if twin == NONE {
+            break;
+        }
+        *start = HalfedgeId(twin).next().0;
+        if *start == first {
+            return count;
+        }
+        count += 1;
+    }
+    let mut h = first;
+    loop {
+        h = twins[HalfedgeId(h).prev().index()];
+        if h == NONE {
+            return count;
+        }
+        count += 1;
+    }
 }

@@ -13,7 +13,11 @@
 //! | `ids.rs`, `map.rs` | typed indices and the vectors they index |
 //! | `traits.rs` | the five traits: faces, adjacency, positions, sink, edit observer |
 //! | `mesh.rs` | `TriMesh`, passive positions and faces |
-//! | `connected.rs`, `corner_table.rs` | `Connected`, the one place that decides manifoldness |
+//! | `connected.rs`, `corner_table.rs`, `edge_groups.rs` | `Connected`, the one place that decides manifoldness |
+//! | `validate.rs`, `collinear.rs` | every defect of a mesh, by kind |
+//! | `loops.rs`, `components.rs` | boundary loops and connected components |
+//! | `normal.rs` | normals of faces, vertices, sides and corners |
+//! | `measure.rs` | area, volume, edge lengths, dihedral angles, genus |
 //! | `origin.rs` | provenance of vertices and faces |
 //! | `surface_point.rs` | a point on a mesh, by vertex, edge or face |
 //! | `bounds.rs` | axis-aligned boxes |
@@ -21,23 +25,41 @@
 //! | `shapes/` | procedural shapes for tests and fixtures |
 
 mod bounds;
+mod collinear;
+mod components;
 mod connected;
 mod corner_table;
+mod edge_groups;
 mod ids;
+mod loops;
 pub mod map;
+mod measure;
 mod mesh;
+mod normal;
 mod origin;
 pub mod shapes;
 mod surface_point;
 mod traits;
+mod validate;
 mod watch;
 
 pub use bounds::Bounds;
+pub use collinear::collinear;
+pub use components::{Components, components};
 pub use connected::{Connected, NotManifold};
 pub use ids::{EdgeId, FaceId, HalfedgeId, VertexId};
+pub use loops::boundary_loops;
 pub use map::{CornerMap, EdgeMap, FaceMap, IdMap, VertexMap};
+pub use measure::{
+    EdgeLengths, Topology, area, bounds, component_topologies, dihedral_angle, edge_lengths, topology, volume,
+};
 pub use mesh::TriMesh;
+pub use normal::{
+    area_vector, corner_angle, corner_normals, face_normal, face_normals, one_sided_normal, triangle_normal,
+    vertex_normals,
+};
 pub use origin::{FaceOrigin, Origins, VertexOrigin};
 pub use surface_point::SurfacePoint;
 pub use traits::{Adjacency, EditObserver, Faces, MeshSink, Positions, Ring};
+pub use validate::{Report, validate};
 pub use watch::{Cancelled, Watch};
