@@ -20,6 +20,7 @@
 //! | `measure.rs` | area, volume, edge lengths, dihedral angles, genus |
 //! | `origin.rs` | provenance of vertices and faces |
 //! | `surface_point.rs` | a point on a mesh, by vertex, edge or face |
+//! | `trace.rs` | straight walks over the surface between two points |
 //! | `bounds.rs` | axis-aligned boxes |
 //! | `watch.rs` | progress and cancellation |
 //! | `shapes/` | procedural shapes for tests and fixtures |
@@ -39,6 +40,7 @@ mod normal;
 mod origin;
 pub mod shapes;
 mod surface_point;
+mod trace;
 mod traits;
 mod validate;
 mod watch;
@@ -60,6 +62,7 @@ pub use normal::{
 };
 pub use origin::{FaceOrigin, Origins, VertexOrigin};
 pub use surface_point::SurfacePoint;
+pub use trace::{TraceError, TraceLimits, trace};
 pub use traits::{Adjacency, EditObserver, Faces, MeshSink, Positions, Ring};
 pub use validate::{Report, validate};
 pub use watch::{Cancelled, Watch};
