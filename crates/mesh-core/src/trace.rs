@@ -111,8 +111,7 @@ pub fn trace<M: Adjacency + Positions>(
         return Ok(vec![]);
     }
     let (start, goal) = (from.position(mesh), to.position(mesh));
-    let longest =
-        from.faces(mesh).chain(to.faces(mesh)).map(|f| longest_edge(mesh, f)).fold(0.0, f64::max);
+    let longest = from.faces(mesh).chain(to.faces(mesh)).map(|f| longest_edge(mesh, f)).fold(0.0, f64::max);
     let limit = limits.stretch * start.distance(goal) + limits.slack * longest;
     PlaneWalk { mesh, start, goal, across: (goal - start).cross(normal).normalize_or_zero(), limit }
         .run(from, to)

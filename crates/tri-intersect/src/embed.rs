@@ -116,7 +116,9 @@ pub enum EmbedError {
     #[error("{} crossings of curves, the first of curve {} with curve {} at {}; part or shorten the curves there", .0.len(), .0[0].curves[0], .0[0].curves[1], .0[0].place)]
     Crossings(Vec<Crossing>),
     /// Two consecutive points have no face in common.
-    #[error("points {point} and the next of curve {curve} share no face, at {place}; trace the curve over the surface first")]
+    #[error(
+        "points {point} and the next of curve {curve} share no face, at {place}; trace the curve over the surface first"
+    )]
     Apart {
         /// The curve.
         curve: usize,
@@ -288,13 +290,7 @@ fn assemble<M: Adjacency + Positions>(
             places
         })
         .collect();
-    Ok(Embedded {
-        mesh: TriMesh { positions, faces },
-        origins,
-        curves: arrangement.chains.clone(),
-        places,
-        flattened,
-    })
+    Ok(Embedded { mesh: TriMesh { positions, faces }, origins, curves: arrangement.chains.clone(), places, flattened })
 }
 
 fn origin_of<M: Adjacency>(mesh: &M, address: SurfacePoint) -> VertexOrigin {

@@ -36,13 +36,8 @@ impl Arrangement {
     pub fn new<M: Adjacency + Positions>(mesh: &M, chains: &[Chain]) -> Result<(Self, Vec<Clash>), EmbedError> {
         let mut clashes = vec![];
         let sites = sites_by_address(chains);
-        let mut this = Self {
-            inherited: mesh.vertex_count(),
-            new: vec![],
-            chains: vec![],
-            edge_points: vec![],
-            segments: vec![],
-        };
+        let mut this =
+            Self { inherited: mesh.vertex_count(), new: vec![], chains: vec![], edge_points: vec![], segments: vec![] };
         for group in sites.chunk_by(|a, b| a.0 == b.0) {
             if group.iter().filter(|(_, s)| !ends_here(chains, *s)).count() > 1 {
                 clashes.extend(group[1..].iter().map(|(_, s)| Clash {
@@ -158,9 +153,10 @@ impl Arrangement {
 
     /// The first node at a vertex. Linear: for error reports.
     pub fn site_of(&self, v: VertexId) -> Option<Site> {
-        self.chains.iter().enumerate().find_map(|(curve, chain)| {
-            chain.iter().position(|&w| w == v).map(|node| Site { curve, node })
-        })
+        self.chains
+            .iter()
+            .enumerate()
+            .find_map(|(curve, chain)| chain.iter().position(|&w| w == v).map(|node| Site { curve, node }))
     }
 }
 

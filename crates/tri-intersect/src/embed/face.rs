@@ -188,7 +188,9 @@ impl<'a> Polygon<'a> {
                 3 => {
                     let halves = [[[0, 1, 2], [0, 2, 3]], [[0, 1, 3], [1, 2, 3]]].map(|d| d.map(|t| t.map(corner)));
                     let worst = halves.map(|d| {
-                        d.iter().map(|t| if positive(points, *t) { self.roundness(*t) } else { -1.0 }).fold(1.0, f64::min)
+                        d.iter()
+                            .map(|t| if positive(points, *t) { self.roundness(*t) } else { -1.0 })
+                            .fold(1.0, f64::min)
                     });
                     triangles.extend(halves[usize::from(worst[1] > worst[0])]);
                 }
@@ -246,11 +248,8 @@ impl<'a> Polygon<'a> {
         }
         // What rounding has left between a side and the chain of its points has all three corners on that side.
         let outside = |t: &[usize; 3]| t.iter().fold(7, |m, &k| m & self.sides.get(k).copied().unwrap_or(0)) != 0;
-        let triangles: Vec<_> = cdt
-            .inner_faces()
-            .map(|f| f.vertices().map(|v| v.index()))
-            .filter(|t| !outside(t))
-            .collect();
+        let triangles: Vec<_> =
+            cdt.inner_faces().map(|f| f.vertices().map(|v| v.index())).filter(|t| !outside(t)).collect();
         if triangles.len() == 2 * (points.len() - boundary) + boundary - 2 {
             Ok(triangles)
         } else {

@@ -16,6 +16,8 @@ pub(super) struct Node {
     pub count: usize,
     /// Whether the address differs from that of the input point, or several were merged.
     pub moved: bool,
+    /// The snap in force here.
+    snap: f64,
 }
 
 pub(super) struct Chain {
@@ -37,7 +39,7 @@ pub(super) fn normalise<M: Adjacency + Positions>(
         let snap = if exact { LEAST_SNAP } else { snap.clamp(LEAST_SNAP, 0.25) };
         let at = canonical(mesh, point, snap).ok_or(EmbedError::BadPoint { curve: curve_id, point: first })?;
         let moved = std::mem::discriminant(point) != std::mem::discriminant(&at);
-        push(mesh, &mut nodes, Node { at, first, count: 1, moved });
+        push(mesh, &mut nodes, Node { at, first, count: 1, moved, snap });
     }
     if closed {
         // Repeats across the seam: once more from a point half way round, then back again.
@@ -51,7 +53,7 @@ pub(super) fn normalise<M: Adjacency + Positions>(
         let start = (0..nodes.len()).min_by_key(|&k| nodes[k].first).unwrap_or(0);
         nodes.rotate_left(start);
         while let [a, .., b] = nodes[..]
-            && a.at == b.at
+            && nearly_same(&a, &b)
         {
             nodes.pop();
             nodes[0] = Node { first: b.first, count: a.count + b.count, moved: true, ..a };
@@ -65,7 +67,8 @@ pub(super) fn normalise<M: Adjacency + Positions>(
 
 /// Appends a node; if it is back at a recent one without having left the neighbourhood, what lies between is merged.
 fn push<M: Adjacency>(mesh: &M, nodes: &mut Vec<Node>, node: Node) {
-    let back = nodes.iter().rev().take(EXCURSION).position(|n| n.at == node.at);
+    let repeats = nodes.last().is_some_and(|last| nearly_same(last, &node));
+    let back = if repeats { Some(0) } else { nodes.iter().rev().take(EXCURSION).position(|n| n.at == node.at) };
     if let Some(back) = back {
         let k = nodes.len() - 1 - back;
         let near = match node.at {
@@ -81,6 +84,20 @@ fn push<M: Adjacency>(mesh: &M, nodes: &mut Vec<Node>, node: Node) {
         }
     }
     nodes.push(node);
+}
+
+/// Whether two nodes of the same edge or face differ by no more than the snap.
+fn nearly_same(a: &Node, b: &Node) -> bool {
+    let snap = a.snap.min(b.snap);
+    match (a.at, b.at) {
+        (SurfacePoint::Edge { halfedge: h, t: s }, SurfacePoint::Edge { halfedge: g, t }) => {
+            h == g && (s - t).abs() <= snap
+        }
+        (SurfacePoint::Face { face: f, barycentric: s }, SurfacePoint::Face { face: g, barycentric: t }) => {
+            f == g && s.iter().zip(t).all(|(s, t)| (s - t).abs() <= snap)
+        }
+        (a, b) => a == b,
+    }
 }
 
 /// Whether `point` lies in the closure of a face around the vertex `center`.
