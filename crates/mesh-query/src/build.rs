@@ -1,20 +1,21 @@
 //! The tree, its construction and the checks of its input.
 
 use crate::frame::Frame;
+use crate::order::{along_morton_curve, index_of, leaves};
 use glam::DVec3;
 use mesh_core::{Bounds, FaceId, Faces, Positions, VertexId};
 use obvhs::bvh2::node::Bvh2Node;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
 
-/// Faces per parallel task.
-const CHUNK: usize = 1 << 14;
+/// Faces per parallel task; a constant, so that nothing depends on the number of threads.
+pub(crate) const CHUNK: usize = 1 << 12;
 
 /// A bounding-volume hierarchy over the triangles of a mesh.
 ///
 /// It holds boxes and face ids only. Every query takes the mesh again and must be given the one the tree was built
 /// from, unchanged; with another mesh a query may answer nonsense, or panic on an index that is not there.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct TriBvh {
     pub(crate) nodes: Vec<Bvh2Node>,
     /// Leaf by leaf: a leaf owns `first_index .. first_index + prim_count`.
@@ -68,7 +69,7 @@ pub enum Error {
 const MAX_FACES: usize = (u32::MAX / 2) as usize;
 
 impl TriBvh {
-    /// A tree over all faces. O(n log n) time, about 100 bytes per face while it runs and 50 after.
+    /// A tree over all faces. O(n log n) time, about 100 bytes per face while it runs and 40 after.
     ///
     /// # Errors
     /// [`Error`], for the lowest face id at fault. An empty mesh is no error.
@@ -105,22 +106,21 @@ impl TriBvh {
         }
         let bounds = bounds_of(mesh, count, &face)?;
         let frame = Frame::around(&bounds);
-        let boxes: Vec<_> = (0..count)
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .map(|i| {
-                let f = face(i);
-                frame.box_of(corners(mesh, f), f.0)
-            })
-            .collect();
-        let tree = PlocBuilder::new().build(
+        let box_of = |f: FaceId| frame.box_of(corners(mesh, f), f.0);
+        let keys = along_morton_curve(count, |i| box_of(face(i)));
+        let faces: Vec<FaceId> = keys.into_par_iter().with_min_len(CHUNK).map(|k| face(index_of(k))).collect();
+        let leaves = leaves(count, |i| box_of(faces[i]));
+        let mut tree = PlocBuilder::new().build(
             PlocSearchDistance::Minimum,
-            &boxes,
-            (0..count as u32).collect(),
+            &leaves,
+            (0..leaves.len() as u32).collect(),
             SortPrecision::U64,
             0,
         );
-        let faces = tree.primitive_indices.iter().map(|&i| face(i as usize)).collect();
+        for node in tree.nodes.iter_mut().filter(|n| n.is_leaf()) {
+            let leaf = &leaves[node.first_index as usize];
+            (node.first_index, node.prim_count) = (leaf.first, leaf.count);
+        }
         Ok(Self { nodes: tree.nodes, faces, frame, bounds })
     }
 

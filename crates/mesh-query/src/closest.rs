@@ -54,7 +54,7 @@ impl TriBvh {
         p: DVec3,
         max_distance: f64,
     ) -> Option<ClosestPoint> {
-        if self.nodes.is_empty() || !p.is_finite() || !(max_distance >= 0.0) {
+        if self.nodes.is_empty() || !p.is_finite() || max_distance.is_nan() || max_distance < 0.0 {
             return None;
         }
         let mut query = Query::new(self, p, max_distance);

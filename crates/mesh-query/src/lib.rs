@@ -24,6 +24,7 @@
 //! |---|---|
 //! | `frame.rs` | the box frame: centre, power-of-two scale, outward rounding |
 //! | `build.rs` | the tree and its construction, checks of the input |
+//! | `order.rs` | triangles along a Morton curve, cut into leaves |
 //! | `triangle.rs` | closest point on one triangle |
 //! | `closest.rs` | closest point on a mesh |
 //! | `ray.rs` | nearest and any hit of a ray, watertight |
@@ -33,6 +34,7 @@
 mod build;
 mod closest;
 mod frame;
+mod order;
 mod overlap;
 mod ray;
 mod stack;

@@ -64,7 +64,7 @@ pub(crate) fn nearest_to_origin(triangle: [DVec3; 3]) -> Nearest {
     let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
     let area = va + vb + vc;
     let longest = ab.length_squared().max(ac.length_squared());
-    if !(area > SLIVER * longest * longest) {
+    if area.is_nan() || area <= SLIVER * longest * longest {
         return nearest_of_sliver(triangle, [va, vb, vc]);
     }
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
