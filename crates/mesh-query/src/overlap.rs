@@ -121,7 +121,9 @@ where
             })
             .collect();
         pairs.reserve(parts.iter().map(Vec::len).sum());
-        parts.iter().for_each(|part| pairs.extend_from_slice(part));
+        for part in &parts {
+            pairs.extend_from_slice(part);
+        }
         pairs.par_sort_unstable();
         pairs
     }

@@ -40,11 +40,11 @@ impl TriBvh {
         let mut ray = Ray::new(self, origin, direction, max_t)?;
         let mut found: Option<RayHit> = None;
         ray.descend(self, |ray, f| {
-            if let Some((t, barycentric)) = ray.meet(corners(mesh, f)) {
-                if t < ray.max_t || (t == ray.max_t && found.is_none_or(|h| f < h.face)) {
-                    ray.max_t = t;
-                    found = Some(RayHit { face: f, t, barycentric });
-                }
+            if let Some((t, barycentric)) = ray.meet(corners(mesh, f))
+                && (t < ray.max_t || (t == ray.max_t && found.is_none_or(|h| f < h.face)))
+            {
+                ray.max_t = t;
+                found = Some(RayHit { face: f, t, barycentric });
             }
             false
         });
