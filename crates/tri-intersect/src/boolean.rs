@@ -1,8 +1,15 @@
 //! Union, difference and intersection of two solids.
 
+use crate::arrange::{self, Arrangement, Part};
+use crate::assemble::assemble;
+use crate::classify::{Flood, SeamTable};
 use crate::error::Error;
+use crate::{check, cut, pinch, seam};
 use glam::DVec3;
-use mesh_core::{Connected, Origins, TriMesh, VertexId, Watch};
+use mesh_core::{Adjacency, Connected, FaceId, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, Watch};
+use mesh_query::TriBvh;
+use rayon::prelude::*;
+use std::time::Instant;
 
 /// Which points the result holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,14 +131,145 @@ pub enum Warning {
 
 /// Joins, subtracts or intersects two solids.
 ///
+/// Crossings are decided by exact predicates on the input points, with explicit cases for coplanar and touching faces;
+/// only crossed faces are cut, everything else keeps its bits. Costs O(n log n) for the trees and the flood over whole
+/// faces, and beyond that time in proportion to the seam. The same input gives the same bits on any number of threads.
+///
 /// # Errors
-/// See [`Error`].
+/// See [`Error`]. Nothing left is [`Error::Empty`], not an empty mesh.
 pub fn boolean(
-    _a: &Connected<TriMesh>,
-    _b: &Connected<TriMesh>,
-    _operation: Operation,
-    _params: &Params,
-    _watch: &Watch,
+    a: &Connected<TriMesh>,
+    b: &Connected<TriMesh>,
+    operation: Operation,
+    params: &Params,
+    watch: &Watch,
 ) -> Result<Boolean, Error> {
-    Err(Error::Empty("not built yet"))
+    let mut clock = Clock { since: Instant::now(), report: Report::default() };
+    let parts = arrange::parts(a, b)?;
+    check_solid(&parts)?;
+    clock.lap("check");
+    let (ta, tb) = rayon::join(|| TriBvh::build(a.mesh()), || TriBvh::build(b.mesh()));
+    let (Ok(ta), Ok(tb)) = (ta, tb) else { return Err(Error::Empty("a part has no faces")) };
+    let trees = [ta, tb];
+    clock.lap("trees");
+    let pairs = trees[0].overlapping_pairs(a.mesh(), &trees[1], b.mesh());
+    clock.lap("pairs");
+    let crossings = arrange::crossings(&parts, &pairs, watch)?;
+    if let Some((part, face)) = crossings.degenerate {
+        let at = parts[part].mesh.mesh().triangle(FaceId(face))[0];
+        return Err(Error::Degenerate { part: part as u32, face: FaceId(face), at });
+    }
+    clock.lap("crossings");
+    let arrangement = Arrangement::new(&parts, &crossings);
+    clock.lap("arrangement");
+    let (mut pieces, merges) = cut::cut(&parts, &arrangement)?;
+    watch.step("cut", 1.0)?;
+    clock.lap("cut");
+    let seams = SeamTable::new(&arrangement, &merges);
+    let flood = |which| Flood { parts: &parts, arrangement: &arrangement, merges: &merges, seams: &seams, which };
+    let [pa, pb] = &mut pieces;
+    let (ca, cb) = rayon::join(|| flood(0).run(pa, &trees[1]), || flood(1).run(pb, &trees[0]));
+    let classes = [ca?, cb?];
+    watch.step("classify", 1.0)?;
+    clock.lap("classify");
+    let mut result = assemble(&parts, &arrangement, &merges, &pieces, &classes, operation);
+    if result.mesh.faces.is_empty() {
+        return Err(Error::Empty(match operation {
+            Operation::Difference => "part 1 covers part 0",
+            _ => "the parts do not overlap",
+        }));
+    }
+    clock.lap("assemble");
+    check::check(&result, &arrangement, &parts, &trees)?;
+    watch.step("check", 1.0)?;
+    clock.lap("validate");
+    if arrangement.degenerate {
+        let first = arrangement.counts[0] + arrangement.counts[1];
+        let mut suspect = vec![false; result.nodes.len()];
+        for n in arrangement.segments.iter().flat_map(|s| s.ends).chain(first..first + arrangement.places.len() as u32)
+        {
+            let v = result.vertices[merges.find(n) as usize];
+            if v != u32::MAX {
+                suspect[v as usize] = true;
+            }
+        }
+        let copies = pinch::split(&mut result, &suspect);
+        if let Some(&v) = copies.first() {
+            let at = result.mesh.positions[v.index()];
+            if params.contact == Contact::Refuse {
+                return Err(Error::Contact { at });
+            }
+            clock.report.warnings.push(Warning::Contact { vertices: copies.len(), at });
+        }
+        clock.lap("contacts");
+    }
+    let [start, middle, end] = result.pieces;
+    let seam_edges = seam::seam_edges(&result.mesh.faces[start..middle], &result.mesh.faces[middle..end]);
+    let seams = seam::chain(&seam_edges);
+    if let Some(open) = seams.iter().find(|s| !s.closed) {
+        return Err(Error::Tangled { part: 0, at: result.mesh.positions[open.vertices[0].index()] });
+    }
+    clock.lap("seams");
+
+    let report = &mut clock.report;
+    report.candidate_pairs = pairs.len();
+    report.crossing_pairs = crossings.segments.len();
+    report.cut_faces = [0, 1].map(|w| pieces[w].faces.len());
+    report.new_vertices = result.nodes.iter().filter(|&&n| n >= arrangement.counts[0] + arrangement.counts[1]).count();
+    if let Some(cell) = arrangement.cells.first() {
+        let at = arrangement.position(&parts, cell.corners[0]);
+        report.warnings.push(Warning::Coplanar { pairs: arrangement.cells.len(), at });
+    }
+    if let Some(node) = merges.example {
+        report.warnings.push(Warning::Merged { points: merges.count, at: arrangement.position(&parts, node) });
+    }
+    Ok(Boolean { mesh: result.mesh, origins: result.origins, seams, report: clock.report })
+}
+
+/// Notes how long each stage took.
+struct Clock {
+    since: Instant,
+    report: Report,
+}
+
+impl Clock {
+    fn lap(&mut self, stage: &'static str) {
+        let now = Instant::now();
+        self.report.stages.push((stage, (now - self.since).as_secs_f64() * 1e3));
+        self.since = now;
+    }
+}
+
+/// Closed, and with the normals outward.
+fn check_solid(parts: &[Part; 2]) -> Result<(), Error> {
+    for (part, Part { mesh, .. }) in parts.iter().enumerate() {
+        let part = part as u32;
+        let points = &mesh.mesh().positions;
+        let origin = mesh.mesh().faces.first().map_or(DVec3::ZERO, |c| points[c[0].index()]);
+        let chunks: Vec<(f64, Option<u32>)> = mesh
+            .mesh()
+            .faces
+            .par_chunks(1 << 14)
+            .enumerate()
+            .map(|(i, faces)| {
+                let mut volume = 0.0;
+                let mut border = None;
+                for (j, c) in faces.iter().enumerate() {
+                    let [p, q, r] = c.map(|v| points[v.index()] - origin);
+                    volume += p.dot(q.cross(r));
+                    let f = FaceId(((i << 14) + j) as u32);
+                    border = border.or((0..3).map(|k| HalfedgeId::new(f, k)).find(|&h| mesh.twin(h).is_none()));
+                }
+                (volume, border.map(|h| h.0))
+            })
+            .collect();
+        if let Some(h) = chunks.iter().find_map(|c| c.1) {
+            return Err(Error::Open { part, at: mesh.position(mesh.tail(HalfedgeId(h))) });
+        }
+        let volume = chunks.iter().map(|c| c.0).sum::<f64>() / 6.0;
+        if volume < 0.0 {
+            return Err(Error::InsideOut { part, volume });
+        }
+    }
+    Ok(())
 }

@@ -4,10 +4,26 @@
 //! |---|---|
 //! | `embed.rs`, `embed/` | curves made part of a mesh, and the parts into which they divide it |
 
+mod arrange;
+mod assemble;
 mod boolean;
+mod check;
+mod classify;
+mod contact;
+mod crossing;
+mod cut;
 pub mod embed;
 mod error;
+mod exact;
+mod inside;
+mod pinch;
+mod predicate;
+mod seam;
+mod self_test;
+mod triangulate;
 
 pub use boolean::{Boolean, Contact, Operation, Params, Report, Seam, Slivers, Warning, boolean};
+pub use contact::triangles_intersect;
 pub use embed::{EmbedError, EmbedParams, Embedded, SurfaceCurve, embed};
 pub use error::Error;
+pub use self_test::{self_intersections, self_intersections_among};

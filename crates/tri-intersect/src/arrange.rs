@@ -1,0 +1,387 @@
+//! All crossings of two meshes: segments and coplanar cells between named points, with the points in exact order along
+//! every edge and placed to the last bit.
+//!
+//! A *node* is a vertex of a (`0..na`), a vertex of b (`na..na+nb`), or a new point. A vertex of b that coincides with a
+//! vertex of a is that node of a.
+
+use crate::crossing::{Crossing, Meeting, cross};
+use crate::error::Error;
+use crate::exact::{Expansion, PAIR_ERROR, Pair, cross2, volume, volume_pair};
+use crate::predicate::{Feature, facing, largest, project, rescaled, scale_for, scaled};
+use glam::DVec3;
+use mesh_core::{Adjacency, Connected, FaceId, Faces, HalfedgeId, TriMesh, VertexId, Watch};
+use mesh_query::TriBvh;
+use rayon::prelude::*;
+use std::borrow::Cow;
+use std::cmp::Ordering;
+
+/// Pairs handed to one task.
+const BATCH: usize = 512;
+
+/// One of the two meshes, with points on which predicates are exact.
+pub(crate) struct Part<'a> {
+    pub mesh: &'a Connected<TriMesh>,
+    pub points: Cow<'a, [DVec3]>,
+    scale: f64,
+}
+
+impl Part<'_> {
+    pub(crate) fn triangle(&self, f: u32) -> [DVec3; 3] {
+        self.mesh.corners(FaceId(f)).map(|v| self.points[v.index()])
+    }
+
+    fn ends(&self, edge: u32) -> [DVec3; 2] {
+        let h = HalfedgeId(edge);
+        [self.points[self.mesh.tail(h).index()], self.points[self.mesh.head(h).index()]]
+    }
+}
+
+/// Both meshes, checked for numbers and scaled alike.
+pub(crate) fn parts<'a>(a: &'a Connected<TriMesh>, b: &'a Connected<TriMesh>) -> Result<[Part<'a>; 2], Error> {
+    let sizes = [a, b].map(|m| largest(&m.mesh().positions));
+    for (part, mesh) in [a, b].into_iter().enumerate() {
+        if !sizes[part].is_finite() {
+            let vertex = mesh.mesh().positions.iter().position(|p| !p.is_finite()).unwrap_or(0);
+            return Err(Error::NotFinite { part: part as u32, vertex: VertexId::from(vertex) });
+        }
+    }
+    let size = sizes[0].max(sizes[1]);
+    Ok([a, b].map(|mesh| Part { mesh, points: scaled(&mesh.mesh().positions[..], size), scale: scale_for(size) }))
+}
+
+/// The part of one mesh that carries a point, in the smallest dimension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Simplex {
+    Vertex(u32),
+    Edge(u32),
+    Face(u32),
+}
+
+/// A point in which two meshes meet, named by what carries it in a and in b.
+pub(crate) type Key = [Simplex; 2];
+
+/// A segment that a face of a and a face of b share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Segment<N> {
+    pub faces: [u32; 2],
+    /// In the direction of the cross product of the normals, unless coplanar.
+    pub ends: [N; 2],
+    pub coplanar: bool,
+}
+
+/// An area that two coplanar faces share.
+#[derive(Clone, Debug)]
+pub(crate) struct Cell<N> {
+    pub faces: [u32; 2],
+    pub corners: Vec<N>,
+    pub aligned: bool,
+}
+
+/// What all pairs of faces share, by name.
+#[derive(Default)]
+pub(crate) struct Crossings {
+    pub segments: Vec<Segment<Key>>,
+    pub cells: Vec<Cell<Key>>,
+    /// A face without area in the way: part and face.
+    pub degenerate: Option<(usize, u32)>,
+}
+
+/// Intersects all candidate pairs.
+pub(crate) fn crossings(parts: &[Part; 2], pairs: &[[FaceId; 2]], watch: &Watch) -> Result<Crossings, Error> {
+    watch.step("intersect", 0.0)?;
+    let batches: Vec<Crossings> = pairs
+        .par_chunks(BATCH)
+        .map(|batch| {
+            let mut found = Crossings::default();
+            batch.iter().for_each(|&[f, g]| cross_faces(parts, [f.0, g.0], &mut found));
+            found
+        })
+        .collect();
+    watch.step("intersect", 1.0)?;
+    let mut all = Crossings::default();
+    for batch in batches {
+        all.segments.extend(batch.segments);
+        all.cells.extend(batch.cells);
+        all.degenerate = all.degenerate.or(batch.degenerate);
+    }
+    Ok(all)
+}
+
+fn cross_faces(parts: &[Part; 2], faces: [u32; 2], found: &mut Crossings) {
+    let triangles = [parts[0].triangle(faces[0]), parts[1].triangle(faces[1])];
+    let key = |m: Meeting| [0, 1].map(|w| simplex(parts[w].mesh, faces[w], m[w]));
+    match cross(&triangles[0], &triangles[1]) {
+        Crossing::Nothing => {}
+        Crossing::Degenerate(part) => found.degenerate = found.degenerate.or(Some((part, faces[part]))),
+        Crossing::Segment(ends) => found.segments.push(Segment { faces, ends: ends.map(key), coplanar: false }),
+        Crossing::Coplanar(overlap) => {
+            let corners: Vec<Key> = overlap.corners.iter().map(|&m| key(m)).collect();
+            found.segments.extend(overlap.sides.iter().map(|s| Segment {
+                faces,
+                ends: s.map(|i| corners[usize::from(i)]),
+                coplanar: true,
+            }));
+            if corners.len() > 2 {
+                found.cells.push(Cell { faces, corners, aligned: overlap.aligned });
+            }
+        }
+    }
+}
+
+fn simplex(mesh: &Connected<TriMesh>, face: u32, feature: Feature) -> Simplex {
+    match feature {
+        Feature::Corner(k) => Simplex::Vertex(mesh.corners(FaceId(face))[usize::from(k)].0),
+        Feature::Side(k) => Simplex::Edge(mesh.edge(HalfedgeId::new(FaceId(face), usize::from(k))).0),
+        Feature::Inside => Simplex::Face(face),
+    }
+}
+
+/// Candidate pairs of faces, in order, from trees over the faces near the common box only.
+pub(crate) fn candidate_pairs(parts: &[Part; 2]) -> Vec<[FaceId; 2]> {
+    let meshes = [parts[0].mesh.mesh(), parts[1].mesh.mesh()];
+    let trees = rayon::join(|| TriBvh::build(meshes[0]), || TriBvh::build(meshes[1]));
+    match trees {
+        (Ok(a), Ok(b)) => a.overlapping_pairs(meshes[0], &b, meshes[1]),
+        _ => vec![],
+    }
+}
+
+/// The crossings as a graph on nodes.
+pub(crate) struct Arrangement {
+    /// Vertices of a and of b.
+    pub counts: [u32; 2],
+    pub segments: Vec<Segment<u32>>,
+    pub cells: Vec<Cell<u32>>,
+    /// New points: names, places, and where on the carrying edge (of a if one of a carries it).
+    pub keys: Vec<Key>,
+    pub places: Vec<DVec3>,
+    pub parameters: Vec<f64>,
+    /// Vertices of b that are vertices of a: (vertex of b, vertex of a), in order.
+    pub twins: Vec<(u32, u32)>,
+    /// For a and for b: (edge, node) for every node within an edge, in order along the edge.
+    pub on_edges: [Vec<(u32, u32)>; 2],
+    /// Whether any two meet other than edge through face.
+    pub degenerate: bool,
+    /// What coordinates were multiplied with for the predicates.
+    scale: f64,
+}
+
+impl Arrangement {
+    /// Names become nodes; nodes get places and an order along edges.
+    pub(crate) fn new(parts: &[Part; 2], crossings: &Crossings) -> Self {
+        let mut keys: Vec<Key> = crossings.segments.iter().flat_map(|s| s.ends).collect();
+        keys.par_sort_unstable();
+        keys.dedup();
+        let counts = [0, 1].map(|w| parts[w].mesh.vertex_count() as u32);
+        let (mut nodes, mut fresh, mut twins) = (Vec::with_capacity(keys.len()), vec![], vec![]);
+        for key in &keys {
+            nodes.push(match *key {
+                [Simplex::Vertex(v), Simplex::Vertex(w)] => {
+                    twins.push((w, v));
+                    v
+                }
+                [Simplex::Vertex(v), _] => v,
+                [_, Simplex::Vertex(w)] => counts[0] + w,
+                _ => {
+                    fresh.push(*key);
+                    counts[0] + counts[1] + fresh.len() as u32 - 1
+                }
+            });
+        }
+        twins.sort_unstable();
+        let node = |key: &Key| nodes[keys.binary_search(key).unwrap_or(0)];
+        let placed: Vec<(f64, DVec3)> = fresh.par_iter().map(|key| place(parts, key)).collect();
+        let (parameters, places) = placed.into_iter().unzip();
+        let on_edges = [0, 1].map(|which| {
+            let mut entries: Vec<Entry> = keys
+                .iter()
+                .zip(&nodes)
+                .filter_map(|(key, &node)| match key[which] {
+                    Simplex::Edge(edge) => {
+                        let (t, error) = parameter(parts, which, edge, key[1 - which]);
+                        Some(Entry { edge, node, carrier: key[1 - which], t, error })
+                    }
+                    _ => None,
+                })
+                .collect();
+            entries.sort_by(|x, y| x.edge.cmp(&y.edge).then_with(|| along(parts, which, x, y)));
+            entries.into_iter().map(|e| (e.edge, e.node)).collect()
+        });
+        let generic =
+            |k: &Key| matches!(k, [Simplex::Edge(_), Simplex::Face(_)] | [Simplex::Face(_), Simplex::Edge(_)]);
+        Self {
+            counts,
+            segments: crossings
+                .segments
+                .par_iter()
+                .map(|s| Segment { faces: s.faces, ends: s.ends.map(|k| node(&k)), coplanar: s.coplanar })
+                .collect(),
+            cells: crossings
+                .cells
+                .iter()
+                .map(|c| Cell { faces: c.faces, corners: c.corners.iter().map(node).collect(), aligned: c.aligned })
+                .collect(),
+            degenerate: !keys.iter().all(generic),
+            scale: parts[0].scale,
+            keys: fresh,
+            places,
+            parameters,
+            twins,
+            on_edges,
+        }
+    }
+
+    /// The node of a part's vertex.
+    pub(crate) fn node(&self, part: usize, vertex: VertexId) -> u32 {
+        if part == 0 {
+            return vertex.0;
+        }
+        match self.twins.binary_search_by_key(&vertex.0, |t| t.0) {
+            Ok(i) => self.twins[i].1,
+            Err(_) => self.counts[0] + vertex.0,
+        }
+    }
+
+    /// Where a node is.
+    pub(crate) fn position(&self, parts: &[Part; 2], node: u32) -> DVec3 {
+        let [a, b] = self.counts;
+        if node < a {
+            parts[0].mesh.mesh().positions[node as usize]
+        } else if node < a + b {
+            parts[1].mesh.mesh().positions[(node - a) as usize]
+        } else {
+            self.places[(node - a - b) as usize]
+        }
+    }
+
+    /// Where a node is, scaled like the parts' points.
+    pub(crate) fn scaled_position(&self, parts: &[Part; 2], node: u32) -> DVec3 {
+        let [a, b] = self.counts;
+        if node < a {
+            parts[0].points[node as usize]
+        } else if node < a + b {
+            parts[1].points[(node - a) as usize]
+        } else {
+            rescaled(self.places[(node - a - b) as usize], self.scale)
+        }
+    }
+
+    /// The nodes within an edge of a part, from the tail of the edge's halfedge to its head.
+    pub(crate) fn along_edge(&self, part: usize, edge: u32) -> &[(u32, u32)] {
+        let list = &self.on_edges[part];
+        let start = list.partition_point(|e| e.0 < edge);
+        let end = start + list[start..].partition_point(|e| e.0 == edge);
+        &list[start..end]
+    }
+}
+
+struct Entry {
+    edge: u32,
+    node: u32,
+    carrier: Simplex,
+    t: Pair,
+    error: f64,
+}
+
+/// Which of two points comes first along their common edge: by pairs of doubles if their error allows, else exactly.
+fn along(parts: &[Part; 2], which: usize, x: &Entry, y: &Entry) -> Ordering {
+    let gap = x.t.sub(y.t).hi;
+    if gap.abs() > x.error + y.error {
+        return gap.total_cmp(&0.0);
+    }
+    let [(n, d), (m, e)] = [x, y].map(|p| exact_parameter(parts, which, p.edge, p.carrier));
+    let order = n.mul(&e).sub(&m.mul(&d)).sign();
+    let order = if d.sign() == e.sign() { order } else { order.reverse() };
+    // Equal places under different names: only where a mesh meets itself. Any fixed order will do.
+    order.then(x.carrier.cmp(&y.carrier))
+}
+
+/// The place of a new point, and its parameter on the edge that carries it.
+fn place(parts: &[Part; 2], key: &Key) -> (f64, DVec3) {
+    let (which, edge) = match *key {
+        [Simplex::Edge(e), _] => (0, e),
+        [_, Simplex::Edge(e)] => (1, e),
+        _ => return (0.0, DVec3::ZERO),
+    };
+    let (t, _) = parameter(parts, which, edge, key[1 - which]);
+    let mesh = parts[which].mesh;
+    let h = HalfedgeId(edge);
+    let positions = &mesh.mesh().positions;
+    let (p, q) = (positions[mesh.tail(h).index()], positions[mesh.head(h).index()]);
+    let x = |i: usize| Pair::sum(q[i], -p[i]).mul(t).add(Pair { hi: p[i], lo: 0.0 }).hi;
+    (t.hi, DVec3::new(x(0), x(1), x(2)))
+}
+
+/// Where along an edge (0 at its tail, 1 at its head) a simplex of the other part meets it, and a bound on the error.
+fn parameter(parts: &[Part; 2], which: usize, edge: u32, carrier: Simplex) -> (Pair, f64) {
+    let [p, q] = parts[which].ends(edge);
+    let other = &parts[1 - which];
+    let (n, d, error) = match carrier {
+        Simplex::Face(f) => {
+            let t = other.triangle(f);
+            let ((n, en), (m, em)) = (volume_pair(t[0], t[1], t[2], p), volume_pair(t[0], t[1], t[2], q));
+            (n, n.sub(m), 2.0 * en + em)
+        }
+        Simplex::Edge(e) => {
+            let [r, s] = other.ends(e);
+            let [p, q, r, s] = planar(p, q, r, s);
+            let cross = |u: [Pair; 2], v: [Pair; 2]| u[0].mul(v[1]).sub(u[1].mul(v[0]));
+            let difference = |u: [f64; 2], v: [f64; 2]| [0, 1].map(|i| Pair::sum(u[i], -v[i]));
+            let size = |u: [Pair; 2]| u[0].hi.abs() + u[1].hi.abs();
+            let (pr, pq, rs) = (difference(r, p), difference(q, p), difference(s, r));
+            (cross(pr, rs), cross(pq, rs), PAIR_ERROR * (size(pr) + 2.0 * size(pq)) * size(rs))
+        }
+        Simplex::Vertex(v) => {
+            let k = longest_axis(q - p);
+            let v = other.points[v as usize];
+            (Pair::sum(v[k], -p[k]), Pair::sum(q[k], -p[k]), PAIR_ERROR * (q[k] - p[k]).abs())
+        }
+    };
+    let error = error / d.hi.abs();
+    if error < 1e-22 {
+        return (n.div(d), error);
+    }
+    let (n, d) = exact_parameter(parts, which, edge, carrier);
+    (n.rounded().div(d.rounded()), PAIR_ERROR)
+}
+
+/// The same as an exact fraction.
+fn exact_parameter(parts: &[Part; 2], which: usize, edge: u32, carrier: Simplex) -> (Expansion, Expansion) {
+    let [p, q] = parts[which].ends(edge);
+    let other = &parts[1 - which];
+    match carrier {
+        Simplex::Face(f) => {
+            let t = other.triangle(f);
+            let n = volume(t[0], t[1], t[2], p);
+            let d = n.sub(&volume(t[0], t[1], t[2], q));
+            (n, d)
+        }
+        Simplex::Edge(e) => {
+            let [r, s] = other.ends(e);
+            let [p, q, r, s] = planar(p, q, r, s);
+            (cross2(p, r, r, s), cross2(p, q, r, s))
+        }
+        Simplex::Vertex(v) => {
+            let k = longest_axis(q - p);
+            let v = other.points[v as usize];
+            (Expansion::difference(v[k], p[k]), Expansion::difference(q[k], p[k]))
+        }
+    }
+}
+
+/// Four coplanar points, not all on one line, seen along an axis that keeps them so.
+fn planar(p: DVec3, q: DVec3, r: DVec3, s: DVec3) -> [[f64; 2]; 4] {
+    let (axis, _) = facing(&[p, q, r]).or(facing(&[p, q, s])).unwrap_or((2, 1));
+    [p, q, r, s].map(|x| project(axis, x))
+}
+
+fn longest_axis(d: DVec3) -> usize {
+    let a = d.abs();
+    if a.x >= a.y && a.x >= a.z {
+        0
+    } else if a.y >= a.z {
+        1
+    } else {
+        2
+    }
+}

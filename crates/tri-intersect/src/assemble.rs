@@ -1,0 +1,137 @@
+//! Puts kept faces and pieces together, with origins.
+
+use crate::arrange::{Arrangement, Part, Simplex};
+use crate::boolean::Operation;
+use crate::classify::CUT;
+use crate::cut::{Class, Merges, Pieces};
+use mesh_core::{Adjacency, FaceId, FaceOrigin, Faces, HalfedgeId, Origins, TriMesh, VertexId, VertexOrigin};
+
+const NONE: u32 = u32::MAX;
+
+/// The result before its contacts are split.
+pub(crate) struct Assembly {
+    pub mesh: TriMesh,
+    pub origins: Origins,
+    /// Kept uncut faces of a and of b, in order; they are the first faces of `mesh`.
+    pub whole: [Vec<u32>; 2],
+    /// Where pieces of a, then of b, begin and end in the faces of `mesh`.
+    pub pieces: [usize; 3],
+    /// Result vertex of each node.
+    pub vertices: Vec<u32>,
+    /// Node of each result vertex.
+    pub nodes: Vec<u32>,
+}
+
+/// Whether faces of a class stay, and whether they are turned round.
+pub(crate) fn keep(operation: Operation, which: usize, class: Class) -> Option<bool> {
+    match (operation, which, class) {
+        (Operation::Union, _, Class::Outside)
+        | (Operation::Union | Operation::Intersection, 0, Class::Same)
+        | (Operation::Intersection, _, Class::Inside)
+        | (Operation::Difference, 0, Class::Outside | Class::Opposite) => Some(false),
+        (Operation::Difference, 1, Class::Inside) => Some(true),
+        _ => None,
+    }
+}
+
+/// Gathers what an operation keeps.
+pub(crate) fn assemble(
+    parts: &[Part; 2],
+    arrangement: &Arrangement,
+    merges: &Merges,
+    pieces: &[Pieces; 2],
+    classes: &[Vec<u8>; 2],
+    operation: Operation,
+) -> Assembly {
+    let class_of = [Class::Unknown, Class::Outside, Class::Inside];
+    let keeps = [0, 1].map(|w| class_of.map(|c| keep(operation, w, c)));
+    let whole = [0, 1].map(|w| {
+        let kept = |&(_, &c): &(usize, &u8)| c != CUT && keeps[w][usize::from(c)].is_some();
+        classes[w].iter().enumerate().filter(kept).map(|(f, _)| f as u32).collect::<Vec<u32>>()
+    });
+    let [na, nb] = arrangement.counts;
+    let node_of_b: Vec<u32> =
+        if arrangement.twins.is_empty() { vec![] } else { (0..nb).map(|v| arrangement.node(1, VertexId(v))).collect() };
+    let node = |w: usize, v: VertexId| match w {
+        0 => v.0,
+        _ if node_of_b.is_empty() => na + v.0,
+        _ => node_of_b[v.index()],
+    };
+    let kept_pieces = [0, 1].map(|w| {
+        let ids = 0..pieces[w].triangles.len();
+        ids.filter_map(|i| keep(operation, w, pieces[w].classes[i]).map(|flip| (i, flip))).collect::<Vec<_>>()
+    });
+
+    let mut vertices = vec![NONE; (na + nb) as usize + arrangement.places.len()];
+    for w in 0..2 {
+        for &f in &whole[w] {
+            for v in parts[w].mesh.corners(FaceId(f)) {
+                vertices[node(w, v) as usize] = 0;
+            }
+        }
+        for &(i, _) in &kept_pieces[w] {
+            pieces[w].triangles[i].iter().for_each(|&n| vertices[n as usize] = 0);
+        }
+    }
+    let mut nodes = vec![];
+    for (n, v) in vertices.iter_mut().enumerate() {
+        if *v == 0 {
+            *v = nodes.len() as u32;
+            nodes.push(n as u32);
+        }
+    }
+
+    let positions = nodes.iter().map(|&n| arrangement.position(parts, n)).collect();
+    let vertex_origins: Vec<VertexOrigin> = nodes.iter().map(|&n| origin(parts, arrangement, n)).collect();
+    let total = whole[0].len() + whole[1].len() + kept_pieces[0].len() + kept_pieces[1].len();
+    let mut faces = Vec::with_capacity(total);
+    let mut face_origins = Vec::with_capacity(total);
+    let turned = |[x, y, z]: [VertexId; 3], flip: bool| if flip { [x, z, y] } else { [x, y, z] };
+    for w in 0..2 {
+        let flip = keeps[w][Class::Outside as usize].or(keeps[w][Class::Inside as usize]).unwrap_or(false);
+        for &f in &whole[w] {
+            let corners = parts[w].mesh.corners(FaceId(f)).map(|v| VertexId(vertices[node(w, v) as usize]));
+            faces.push(turned(corners, flip));
+            face_origins.push(FaceOrigin::Input { part: w as u32, face: FaceId(f) });
+        }
+    }
+    let mut bounds = [faces.len(); 3];
+    for w in 0..2 {
+        for &(i, flip) in &kept_pieces[w] {
+            let (t, face) = (pieces[w].triangles[i], FaceId(pieces[w].parents[i]));
+            faces.push(turned(t.map(|n| VertexId(vertices[n as usize])), flip));
+            let part = w as u32;
+            let corners = parts[w].mesh.corners(face).map(|v| merges.find(node(w, v)));
+            let same = (0..3).any(|k| t == [corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]]);
+            face_origins.push(if same { FaceOrigin::Input { part, face } } else { FaceOrigin::Piece { part, face } });
+        }
+        bounds[w + 1] = faces.len();
+    }
+    Assembly {
+        mesh: TriMesh { positions, faces },
+        origins: Origins { vertices: vertex_origins.into(), faces: face_origins.into() },
+        whole,
+        pieces: bounds,
+        vertices,
+        nodes,
+    }
+}
+
+fn origin(parts: &[Part; 2], arrangement: &Arrangement, node: u32) -> VertexOrigin {
+    let [na, nb] = arrangement.counts;
+    if node < na {
+        return VertexOrigin::Input { part: 0, vertex: VertexId(node) };
+    }
+    if node < na + nb {
+        return VertexOrigin::Input { part: 1, vertex: VertexId(node - na) };
+    }
+    let i = (node - na - nb) as usize;
+    let (part, edge) = match arrangement.keys[i] {
+        [Simplex::Edge(e), _] => (0, e),
+        [_, Simplex::Edge(e)] => (1, e),
+        _ => return VertexOrigin::New { stage: "boolean" },
+    };
+    let (mesh, h) = (parts[part].mesh, HalfedgeId(edge));
+    debug_assert!(mesh.edge(h).0 == edge);
+    VertexOrigin::Edge { part: part as u32, ends: [mesh.tail(h), mesh.head(h)], t: arrangement.parameters[i] }
+}
