@@ -18,7 +18,8 @@
 //! | `loops.rs`, `components.rs` | boundary loops and connected components |
 //! | `normal.rs` | normals of faces, vertices, sides and corners |
 //! | `measure.rs` | area, volume, edge lengths, dihedral angles, genus |
-//! | `origin.rs` | provenance of vertices and faces |
+//! | `geodesic.rs`, `path.rs` | distance floods with barriers, cheapest paths along edges |
+//! | `origin.rs`, `compose.rs` | provenance of vertices and faces, composed across stages |
 //! | `surface_point.rs` | a point on a mesh, by vertex, edge or face |
 //! | `trace.rs` | straight walks over the surface between two points |
 //! | `bounds.rs` | axis-aligned boxes |
@@ -28,9 +29,11 @@
 mod bounds;
 mod collinear;
 mod components;
+mod compose;
 mod connected;
 mod corner_table;
 mod edge_groups;
+mod geodesic;
 mod ids;
 mod loops;
 pub mod map;
@@ -38,6 +41,7 @@ mod measure;
 mod mesh;
 mod normal;
 mod origin;
+mod path;
 pub mod shapes;
 mod surface_point;
 mod trace;
@@ -48,7 +52,9 @@ mod watch;
 pub use bounds::Bounds;
 pub use collinear::collinear;
 pub use components::{Components, components};
+pub use compose::Stage;
 pub use connected::{Connected, NotManifold};
+pub use geodesic::{Flood, FloodParams, Seed, Source, flood};
 pub use ids::{EdgeId, FaceId, HalfedgeId, VertexId};
 pub use loops::boundary_loops;
 pub use map::{CornerMap, EdgeMap, FaceMap, IdMap, VertexMap};
@@ -61,6 +67,7 @@ pub use normal::{
     vertex_normals,
 };
 pub use origin::{FaceOrigin, Origins, VertexOrigin};
+pub use path::shortest_path;
 pub use surface_point::SurfacePoint;
 pub use trace::{TraceError, TraceLimits, trace};
 pub use traits::{Adjacency, EditObserver, Faces, MeshSink, Positions, Ring};

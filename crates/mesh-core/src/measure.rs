@@ -150,7 +150,9 @@ pub fn component_topologies<M: Adjacency>(mesh: &M, parts: &Components) -> Vec<T
         }
     }
     edges(mesh).for_each(|h| of(h, |t| t.edges += 1));
-    boundary_loops(mesh).iter().for_each(|walk| of(walk[0], |t| t.boundary_loops += 1));
+    for walk in boundary_loops(mesh) {
+        of(walk[0], |t| t.boundary_loops += 1);
+    }
     counts
 }
 

@@ -5,10 +5,13 @@
 //! | file | holds |
 //! |---|---|
 //! | `solids.rs` | boxes and subdivided spheres |
+//! | `flat.rs` | plane grids, subdivided boxes, the L-bracket |
 //! | `round.rs` | shapes of revolution |
 
+mod flat;
 mod round;
 mod solids;
 
+pub use flat::{bracket, cuboid_grid, grid};
 pub use round::{capsule, cone, cylinder, open_cylinder, torus, truncated_cone, tube, uv_sphere};
 pub use solids::{cuboid, icosphere};
