@@ -10,7 +10,6 @@ use crate::exact::{Expansion, PAIR_ERROR, Pair, cross2, volume, volume_pair};
 use crate::predicate::{Feature, facing, largest, project, rescaled, scale_for, scaled};
 use glam::DVec3;
 use mesh_core::{Adjacency, Connected, FaceId, Faces, HalfedgeId, TriMesh, VertexId, Watch};
-use mesh_query::TriBvh;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::cmp::Ordering;
@@ -82,6 +81,8 @@ pub(crate) struct Cell<N> {
 pub(crate) struct Crossings {
     pub segments: Vec<Segment<Key>>,
     pub cells: Vec<Cell<Key>>,
+    /// Single points in which two faces touch.
+    pub touches: Vec<([u32; 2], Key)>,
     /// A face without area in the way: part and face.
     pub degenerate: Option<(usize, u32)>,
 }
@@ -102,6 +103,7 @@ pub(crate) fn crossings(parts: &[Part; 2], pairs: &[[FaceId; 2]], watch: &Watch)
     for batch in batches {
         all.segments.extend(batch.segments);
         all.cells.extend(batch.cells);
+        all.touches.extend(batch.touches);
         all.degenerate = all.degenerate.or(batch.degenerate);
     }
     Ok(all)
@@ -112,6 +114,7 @@ fn cross_faces(parts: &[Part; 2], faces: [u32; 2], found: &mut Crossings) {
     let key = |m: Meeting| [0, 1].map(|w| simplex(parts[w].mesh, faces[w], m[w]));
     match cross(&triangles[0], &triangles[1]) {
         Crossing::Nothing => {}
+        Crossing::Point(m) => found.touches.push((faces, key(m))),
         Crossing::Degenerate(part) => found.degenerate = found.degenerate.or(Some((part, faces[part]))),
         Crossing::Segment(ends) => found.segments.push(Segment { faces, ends: ends.map(key), coplanar: false }),
         Crossing::Coplanar(overlap) => {
@@ -136,16 +139,6 @@ fn simplex(mesh: &Connected<TriMesh>, face: u32, feature: Feature) -> Simplex {
     }
 }
 
-/// Candidate pairs of faces, in order, from trees over the faces near the common box only.
-pub(crate) fn candidate_pairs(parts: &[Part; 2]) -> Vec<[FaceId; 2]> {
-    let meshes = [parts[0].mesh.mesh(), parts[1].mesh.mesh()];
-    let trees = rayon::join(|| TriBvh::build(meshes[0]), || TriBvh::build(meshes[1]));
-    match trees {
-        (Ok(a), Ok(b)) => a.overlapping_pairs(meshes[0], &b, meshes[1]),
-        _ => vec![],
-    }
-}
-
 /// The crossings as a graph on nodes.
 pub(crate) struct Arrangement {
     /// Vertices of a and of b.
@@ -160,6 +153,8 @@ pub(crate) struct Arrangement {
     pub twins: Vec<(u32, u32)>,
     /// For a and for b: (edge, node) for every node within an edge, in order along the edge.
     pub on_edges: [Vec<(u32, u32)>; 2],
+    /// Pairs of faces that touch in a point that is on no segment, and the point.
+    pub touches: Vec<([u32; 2], DVec3)>,
     /// Whether any two meet other than edge through face.
     pub degenerate: bool,
     /// What coordinates were multiplied with for the predicates.
@@ -209,8 +204,10 @@ impl Arrangement {
         });
         let generic =
             |k: &Key| matches!(k, [Simplex::Edge(_), Simplex::Face(_)] | [Simplex::Face(_), Simplex::Edge(_)]);
+        let lone = crossings.touches.iter().filter(|t| keys.binary_search(&t.1).is_err());
         Self {
             counts,
+            touches: lone.map(|&(faces, key)| (faces, touched_place(parts, &key))).collect(),
             segments: crossings
                 .segments
                 .par_iter()
@@ -294,6 +291,14 @@ fn along(parts: &[Part; 2], which: usize, x: &Entry, y: &Entry) -> Ordering {
     let order = if d.sign() == e.sign() { order } else { order.reverse() };
     // Equal places under different names: only where a mesh meets itself. Any fixed order will do.
     order.then(x.carrier.cmp(&y.carrier))
+}
+
+fn touched_place(parts: &[Part; 2], key: &Key) -> DVec3 {
+    match *key {
+        [Simplex::Vertex(v), _] => parts[0].mesh.mesh().positions[v as usize],
+        [_, Simplex::Vertex(v)] => parts[1].mesh.mesh().positions[v as usize],
+        _ => place(parts, key).1,
+    }
 }
 
 /// The place of a new point, and its parameter on the edge that carries it.

@@ -16,10 +16,42 @@ pub(crate) struct Assembly {
     pub whole: [Vec<u32>; 2],
     /// Where pieces of a, then of b, begin and end in the faces of `mesh`.
     pub pieces: [usize; 3],
+    /// The part of each face after those.
+    pub extra: Vec<u8>,
     /// Result vertex of each node.
     pub vertices: Vec<u32>,
     /// Node of each result vertex.
     pub nodes: Vec<u32>,
+}
+
+impl Assembly {
+    /// Whether a face of the result is of part b.
+    pub(crate) fn is_of_b(&self, face: u32) -> bool {
+        let f = face as usize;
+        match f.checked_sub(self.pieces[2]) {
+            Some(extra) => self.extra[extra] == 1,
+            None => (f >= self.whole[0].len() && f < self.pieces[0]) || f >= self.pieces[1],
+        }
+    }
+
+    /// Whether any piece of a face is left.
+    pub(crate) fn pieces_of_face(&self, which: usize, face: u32) -> bool {
+        let of = |o: &FaceOrigin| match *o {
+            FaceOrigin::Input { part, face: f } | FaceOrigin::Piece { part, face: f } => {
+                (part, f) == (which as u32, FaceId(face))
+            }
+            FaceOrigin::New { .. } => false,
+        };
+        self.origins.faces.as_slice()[self.pieces[which]..self.pieces[which + 1]].iter().any(of)
+    }
+
+    /// The pieces of one part.
+    pub(crate) fn pieces_of(&self, which: usize) -> Vec<[VertexId; 3]> {
+        let mut faces = self.mesh.faces[self.pieces[which]..self.pieces[which + 1]].to_vec();
+        let extra = self.extra.iter().zip(&self.mesh.faces[self.pieces[2]..]);
+        faces.extend(extra.filter(|(w, _)| usize::from(**w) == which).map(|(_, f)| *f));
+        faces
+    }
 }
 
 /// Whether faces of a class stay, and whether they are turned round.
@@ -112,6 +144,7 @@ pub(crate) fn assemble(
         origins: Origins { vertices: vertex_origins.into(), faces: face_origins.into() },
         whole,
         pieces: bounds,
+        extra: vec![],
         vertices,
         nodes,
     }

@@ -2,7 +2,7 @@
 
 use crate::arrange::{self, Arrangement, Part};
 use crate::assemble::assemble;
-use crate::classify::{Flood, SeamTable};
+use crate::classify::{CUT, Flood, SeamTable};
 use crate::error::Error;
 use crate::{check, cut, pinch, seam};
 use glam::DVec3;
@@ -195,17 +195,21 @@ pub fn boolean(
         }
         let copies = pinch::split(&mut result, &suspect);
         if let Some(&v) = copies.first() {
-            let at = result.mesh.positions[v.index()];
-            if params.contact == Contact::Refuse {
-                return Err(Error::Contact { at });
-            }
-            clock.report.warnings.push(Warning::Contact { vertices: copies.len(), at });
+            clock.contact(params, result.mesh.positions[v.index()], copies.len())?;
         }
         clock.lap("contacts");
     }
-    let [start, middle, end] = result.pieces;
-    let seam_edges = seam::seam_edges(&result.mesh.faces[start..middle], &result.mesh.faces[middle..end]);
-    let seams = seam::chain(&seam_edges);
+    // Lone points of contact count if both faces are still there.
+    let stays = |w: usize, f: u32| match classes[w][f as usize] {
+        CUT => result.pieces_of_face(w, f),
+        _ => result.whole[w].binary_search(&f).is_ok(),
+    };
+    let touches: Vec<DVec3> =
+        arrangement.touches.iter().filter(|t| stays(0, t.0[0]) && stays(1, t.0[1])).map(|t| t.1).collect();
+    if let Some(&at) = touches.first() {
+        clock.contact(params, at, 0)?;
+    }
+    let seams = seam::chain(&seam::seam_edges(&result.pieces_of(0), &result.pieces_of(1)));
     if let Some(open) = seams.iter().find(|s| !s.closed) {
         return Err(Error::Tangled { part: 0, at: result.mesh.positions[open.vertices[0].index()] });
     }
@@ -237,6 +241,15 @@ impl Clock {
         let now = Instant::now();
         self.report.stages.push((stage, (now - self.since).as_secs_f64() * 1e3));
         self.since = now;
+    }
+
+    /// Refuses or notes a place where sheets touch.
+    fn contact(&mut self, params: &Params, at: DVec3, vertices: usize) -> Result<(), Error> {
+        if params.contact == Contact::Refuse {
+            return Err(Error::Contact { at });
+        }
+        self.report.warnings.push(Warning::Contact { vertices, at });
+        Ok(())
     }
 }
 

@@ -4,7 +4,7 @@ use crate::arrange::{Arrangement, Part};
 use crate::assemble::Assembly;
 use crate::error::Error;
 use crate::self_test::faces_clash;
-use mesh_core::{FaceId, Faces};
+use mesh_core::{FaceId, FaceOrigin, Faces};
 use mesh_query::TriBvh;
 use rayon::prelude::*;
 
@@ -28,7 +28,20 @@ pub(crate) fn check(
         }));
         offset += result.whole[w].len();
     }
+    let parent = |f: FaceId| match result.origins.faces[f] {
+        FaceOrigin::Input { part, face } | FaceOrigin::Piece { part, face } => (part, face.0),
+        FaceOrigin::New { .. } => (2, 0),
+    };
+    // Known contacts in a single point are reported as such, not as intersections.
+    let touch = |pair: &[FaceId; 2]| {
+        let [p, q] = pair.map(parent);
+        let faces = [p.min(q).1, p.max(q).1];
+        p.0 != q.0 && arrangement.touches.binary_search_by_key(&faces, |t| t.0).is_ok()
+    };
     let bad = |pair: &&[FaceId; 2]| {
+        if !arrangement.touches.is_empty() && touch(pair) {
+            return false;
+        }
         let [p, q] = pair.map(|f| result.mesh.corners(f));
         faces_clash(p, q, |v| arrangement.scaled_position(parts, result.nodes[v.index()]))
     };

@@ -13,8 +13,10 @@ pub(crate) type Meeting = [Feature; 2];
 /// What two triangles share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Crossing {
-    /// Nothing, or a single point.
+    /// Nothing.
     Nothing,
+    /// A single point, in which they only touch.
+    Point(Meeting),
     /// A segment; from its first end to its second it runs along the cross product of the normals of a and b.
     Segment([Meeting; 2]),
     /// They lie in one plane and share a segment or an area.
@@ -63,7 +65,11 @@ pub(crate) fn cross(a: &[DVec3; 3], b: &[DVec3; 3]) -> Crossing {
             points.push(pierce(b[i], b[j], a).map(|f| [f, Feature::Side(k)]));
         }
     }
-    let &[p, q] = points.as_slice() else { return Crossing::Nothing };
+    let (p, q) = match *points.as_slice() {
+        [p, q] => (p, q),
+        [p] => return Crossing::Point(p),
+        _ => return Crossing::Nothing,
+    };
     // Along na × nb the common line enters a where a's outline rises through b's plane, and b where b's falls.
     let (in_a, out_a) = passage(sa);
     let (out_b, in_b) = passage(sb);
@@ -153,8 +159,10 @@ fn flat(a: &[DVec3; 3], b: &[DVec3; 3]) -> Crossing {
         }
     }
     let corners = points.as_slice().to_vec();
-    if corners.len() < 2 {
-        return Crossing::Nothing;
+    match corners[..] {
+        [] => return Crossing::Nothing,
+        [p] => return Crossing::Point(p),
+        _ => {}
     }
     // A side of the common polygon lies on a side of a or of b, which holds no other of its corners.
     let on = |f: Feature, k: u8| f == Feature::Side(k) || f == Feature::Corner(k) || f == Feature::Corner((k + 1) % 3);
@@ -200,7 +208,14 @@ mod tests {
             let ba = cross(&b, &a);
             let flipped = cross(&[a[0], a[2], a[1]], &b);
             match &ab {
-                Crossing::Nothing => assert_eq!(ba, Crossing::Nothing),
+                Crossing::Nothing => {
+                    assert_eq!(ba, Crossing::Nothing);
+                    assert!(!crate::contact::meet(&a, &b));
+                }
+                Crossing::Point(m) => {
+                    assert_eq!(ba, Crossing::Point([m[1], m[0]]));
+                    assert!(crate::contact::meet(&a, &b));
+                }
                 Crossing::Segment([p, q]) => {
                     segments += 1;
                     assert!(crate::contact::meet(&a, &b));

@@ -50,6 +50,7 @@ fn check(a: &TriMesh, b: &TriMesh, result: &Boolean) {
                 let [x, y] = ends.map(|v| parts[part as usize].positions[v.index()]);
                 assert!((x + t * (y - x)).distance(p) <= 1e-14 * size);
             }
+            VertexOrigin::New { stage: "contact" } => assert!(touches),
             o => panic!("{o:?}"),
         }
     }
