@@ -7,30 +7,43 @@ use std::f64::consts::{PI, TAU};
 
 /// Turns the profile (radius, height) around the z axis in `segments` steps; points with zero radius become one vertex.
 ///
-/// The profile runs with the solid on its left, seen with the radius to the right and the height up. `closed` joins its
-/// last point to its first.
-fn lathe(profile: &[DVec2], segments: u32, closed: bool) -> TriMesh {
+/// The profile runs with the solid on its left, seen with the radius to the right and the height up. `Ends::Joined`
+/// leads its last point to its first.
+fn lathe(profile: &[DVec2], segments: u32, ends: Ends) -> TriMesh {
     let n = segments.max(3);
+    let row = |p: &DVec2| {
+        let count = if p.x == 0.0 { 1 } else { n };
+        let angle = |i: u32| TAU * f64::from(i) / f64::from(n);
+        (0..count).map(|i| (p.x * DVec2::from_angle(angle(i))).extend(p.y)).collect()
+    };
+    weave(&profile.iter().map(row).collect::<Vec<_>>(), ends)
+}
+
+/// What becomes of the first and last row of a weave.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Ends {
+    /// They stay boundaries, unless they are points.
+    Free,
+    /// The last row is joined to the first.
+    Joined,
+}
+
+/// Triangles between consecutive closed rows of points, seen from outside counter-clockwise with rows going up. All
+/// rows have the same number of points, or one: a pole.
+pub(super) fn weave(rows: &[Vec<DVec3>], ends: Ends) -> TriMesh {
     let mut mesh = TriMesh::default();
-    let starts: Vec<u32> = profile
-        .iter()
-        .map(|p| {
-            let start = mesh.positions.len() as u32;
-            let on_axis = p.x == 0.0;
-            mesh.positions.extend((0..if on_axis { 1 } else { n }).map(|i| {
-                let (sin, cos) = (TAU * f64::from(i) / f64::from(n)).sin_cos();
-                DVec3::new(p.x * cos, p.x * sin, p.y)
-            }));
-            start
-        })
-        .collect();
-    let at = |row: usize, i: u32| VertexId(if profile[row].x == 0.0 { starts[row] } else { starts[row] + i % n });
-    let rows = profile.len();
-    for row in 0..if closed { rows } else { rows.saturating_sub(1) } {
-        let up = (row + 1) % rows;
+    let mut starts = vec![];
+    for row in rows {
+        starts.push(mesh.positions.len() as u32);
+        mesh.positions.extend(row);
+    }
+    let n = rows.iter().map(Vec::len).max().unwrap_or(0) as u32;
+    let at = |row: usize, i: u32| VertexId(starts[row] + i % rows[row].len() as u32);
+    for row in 0..if ends == Ends::Joined { rows.len() } else { rows.len().saturating_sub(1) } {
+        let up = (row + 1) % rows.len();
         for i in 0..n {
             let [a, b, c, d] = [at(row, i), at(row, i + 1), at(up, i + 1), at(up, i)];
-            // A side that has shrunk to a point on the axis leaves one triangle.
+            // Beside a pole one of the two has shrunk to nothing.
             mesh.faces
                 .extend([[a, b, c], [a, c, d]].into_iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]));
         }
@@ -44,12 +57,12 @@ pub fn torus(major: f64, minor: f64, around: u32, across: u32) -> TriMesh {
     let k = across.max(3);
     let profile: Vec<DVec2> =
         (0..k).map(|i| DVec2::new(major, 0.0) + minor * DVec2::from_angle(TAU * f64::from(i) / f64::from(k))).collect();
-    lathe(&profile, around, true)
+    lathe(&profile, around, Ends::Joined)
 }
 
 /// A sphere around the origin with poles on the z axis: `segments` meridians (3 at least), `rings` bands (2 at least).
 pub fn uv_sphere(radius: f64, segments: u32, rings: u32) -> TriMesh {
-    lathe(&arc_profile(radius, 0.0, -0.5 * PI, 0.5 * PI, rings.max(2)), segments, false)
+    lathe(&arc_profile(radius, 0.0, -0.5 * PI, 0.5 * PI, rings.max(2)), segments, Ends::Free)
 }
 
 /// An arc around (0, height), with exact zeros where it meets the axis.
@@ -79,7 +92,7 @@ pub fn cylinder(radius: f64, height: f64, segments: u32, rows: u32) -> TriMesh {
 
 /// The side of a cylinder alone: two boundary loops.
 pub fn open_cylinder(radius: f64, height: f64, segments: u32, rows: u32) -> TriMesh {
-    lathe(&side([radius, radius], height, rows).collect::<Vec<_>>(), segments, false)
+    lathe(&side([radius, radius], height, rows).collect::<Vec<_>>(), segments, Ends::Free)
 }
 
 /// A closed cone around the z axis, apex up, centred on half its height, its side in `rows` bands.
@@ -97,7 +110,7 @@ pub fn truncated_cone(radii: [f64; 2], height: f64, segments: u32, rows: u32) ->
     if radii[1] != 0.0 {
         profile.push(DVec2::new(0.0, 0.5 * height));
     }
-    lathe(&profile, segments, false)
+    lathe(&profile, segments, Ends::Free)
 }
 
 /// A closed pipe around the z axis, centred on the origin, with its inner and outer radius. Genus 1.
@@ -105,7 +118,7 @@ pub fn tube(inner: f64, outer: f64, height: f64, segments: u32, rows: u32) -> Tr
     let mut profile: Vec<DVec2> = side([outer, outer], height, rows).collect();
     let inside: Vec<DVec2> = side([inner, inner], height, rows).collect();
     profile.extend(inside.into_iter().rev());
-    lathe(&profile, segments, true)
+    lathe(&profile, segments, Ends::Joined)
 }
 
 /// A cylinder of the given height with half spheres on both ends, around the z axis, centred on the origin. `rings`
@@ -115,5 +128,5 @@ pub fn capsule(radius: f64, height: f64, segments: u32, rings: u32, rows: u32) -
     let mut profile = arc_profile(radius, -0.5 * height, -0.5 * PI, 0.0, rings);
     profile.extend(side([radius, radius], height, rows).skip(1).take(rows.max(1) as usize - 1));
     profile.extend(arc_profile(radius, 0.5 * height, 0.0, 0.5 * PI, rings));
-    lathe(&profile, segments, false)
+    lathe(&profile, segments, Ends::Free)
 }

@@ -75,3 +75,37 @@ pub fn icosphere(radius: f64, levels: u32) -> TriMesh {
         faces: faces.into_iter().map(|c| c.map(VertexId)).collect(),
     }
 }
+
+/// A sphere around the origin: each triangle of an icosahedron in `n²`, vertices pushed out to the sphere. `20·n²`
+/// triangles, for sizes between those of [`icosphere`].
+pub fn geodesic_sphere(radius: f64, n: u32) -> TriMesh {
+    let n = n.max(1);
+    let base = icosphere(1.0, 0);
+    let mut mesh = TriMesh::default();
+    // A vertex is known by the corners it is made of and their shares, so that neighbours find it again.
+    let mut ids: HashMap<[(u32, u32); 3], VertexId> = HashMap::new();
+    let mut at = |mesh: &mut TriMesh, mut shares: [(u32, u32); 3]| {
+        for share in shares.iter_mut().filter(|s| s.1 == 0) {
+            share.0 = 0;
+        }
+        shares.sort_unstable();
+        *ids.entry(shares).or_insert_with(|| {
+            let p: DVec3 = shares.iter().map(|&(c, w)| f64::from(w) * base.positions[c as usize]).sum();
+            mesh.positions.push(radius * p.normalize());
+            VertexId::from(mesh.positions.len() - 1)
+        })
+    };
+    for corners in &base.faces {
+        let [a, b, c] = corners.map(|v| v.0);
+        for i in 0..n {
+            for j in 0..n - i {
+                let mut point = |i: u32, j: u32| at(&mut mesh, [(a, n - i - j), (b, i), (c, j)]);
+                let [p, q, r] = [point(i, j), point(i + 1, j), point(i, j + 1)];
+                let s = (i + j + 1 < n).then(|| point(i + 1, j + 1));
+                mesh.faces.push([p, q, r]);
+                mesh.faces.extend(s.map(|s| [q, s, r]));
+            }
+        }
+    }
+    mesh
+}
