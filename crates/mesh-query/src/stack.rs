@@ -1,6 +1,6 @@
 //! The traversal stack: on the stack of the thread while shallow, on the heap when a degenerate tree is deep.
 
-const INLINE: usize = 64;
+const INLINE: usize = 40;
 
 pub(crate) struct Stack<T> {
     inline: [T; INLINE],

@@ -4,7 +4,7 @@
 //! then gives every pixel the light of all. No grain is left, at a sixteenth of the rays.
 
 use crate::scene::{Place, Scene, Sight};
-use glam::DVec3;
+use glam::{DVec3, Vec3A};
 use mesh_core::{Cancelled, Watch};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -13,13 +13,13 @@ use std::f64::consts::TAU;
 const TILE: usize = 4;
 
 /// How far rays look, in half sizes of the model.
-const REACH: f64 = 1.0;
+pub(crate) const REACH: f64 = 1.0;
 
 /// Start of a ray above its surface, likewise.
 const LIFT: f64 = 1e-5;
 
 /// Pixels that the filter looks to either side.
-const RADIUS: usize = 5;
+const RADIUS: usize = 4;
 
 /// The share of the sky that each pixel's point sees, 1 where there is none.
 pub(crate) fn openness(
@@ -78,39 +78,52 @@ fn seen_from(scene: &Scene, place: &Place, directions: &[DVec3]) -> f32 {
     open as f32 / count as f32
 }
 
+/// A place in single precision: the filter reads each pixel's many times.
+#[derive(Clone, Copy)]
+struct Spot {
+    point: Vec3A,
+    normal: Vec3A,
+    open: f32,
+}
+
 /// Each pixel averaged with those around it that lie on the same piece of surface.
 fn filtered(raw: &[f32], sights: &[Sight], width: usize) -> Vec<f32> {
     let height = sights.len() / width;
-    let pixel_size = 2.0 / height as f64;
+    // Points may leave each other's planes by four pixels' worth before they count as apart.
+    let apart = 0.125 * height as f32;
+    let spot = |(sight, &open): (&Sight, &f32)| {
+        sight.place().map(|p| Spot { point: p.point.as_vec3a(), normal: p.normal.as_vec3a(), open })
+    };
+    let spots: Vec<Option<Spot>> = sights.iter().zip(raw).map(spot).collect();
     (0..sights.len())
         .into_par_iter()
         .with_min_len(width)
         .map(|i| {
-            let Some(here) = sights[i].place() else { return 1.0 };
+            let Some(here) = spots[i] else { return 1.0 };
             let (x, y) = (i % width, i / width);
             let (mut sum, mut weights) = (0.0, 0.0);
             for v in y.saturating_sub(RADIUS)..height.min(y + RADIUS + 1) {
                 for u in x.saturating_sub(RADIUS)..width.min(x + RADIUS + 1) {
-                    let j = v * width + u;
-                    if let Some(there) = sights[j].place() {
-                        let weight = likeness(here, there, pixel_size) * tent(x, u) * tent(y, v);
-                        sum += weight * f64::from(raw[j]);
+                    if let Some(there) = &spots[v * width + u] {
+                        let weight = likeness(&here, there, apart) * tent(x, u) * tent(y, v);
+                        sum += weight * there.open;
                         weights += weight;
                     }
                 }
             }
-            (sum / weights) as f32
+            sum / weights
         })
         .collect()
 }
 
-fn tent(a: usize, b: usize) -> f64 {
-    1.0 - a.abs_diff(b) as f64 / (RADIUS + 1) as f64
+fn tent(a: usize, b: usize) -> f32 {
+    1.0 - a.abs_diff(b) as f32 / (RADIUS + 1) as f32
 }
 
-/// 1 for points of one plane, less as normals turn and as points leave each other's planes.
-fn likeness(a: &Place, b: &Place, pixel_size: f64) -> f64 {
-    let off = (b.point - a.point).dot(a.normal).abs() / (4.0 * pixel_size);
+/// 1 for points of one plane, less as normals turn and as points leave each other's planes; never 0.
+#[inline]
+fn likeness(a: &Spot, b: &Spot, apart: f32) -> f32 {
+    let off = (b.point - a.point).dot(a.normal).abs() * apart;
     let turn = a.normal.dot(b.normal).max(0.0);
     turn * turn * turn * turn * (1.0 - off).max(0.0) + 1e-9
 }

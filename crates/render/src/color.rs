@@ -7,7 +7,7 @@ use glam::{DVec3, DVec4};
 use mesh_core::{FaceId, TriMesh};
 
 /// Plain surfaces, and the inside of surfaces of any colour.
-const CLAY: [f64; 3] = [0.76, 0.79, 0.83];
+const CLAY: [f64; 3] = [0.62, 0.71, 0.81];
 const INSIDE: [f64; 3] = [0.80, 0.44, 0.33];
 
 /// Apart in hue and close in lightness, so that shading reads across them.

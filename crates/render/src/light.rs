@@ -12,14 +12,14 @@ struct Light {
 
 /// From above the left shoulder, a cool fill from the right, and one from behind that draws the outline.
 const LIGHTS: [Light; 3] = [
-    Light { towards: [-0.45, 0.66, 0.60], color: [0.98, 0.94, 0.87], wrap: 0.2 },
-    Light { towards: [0.85, 0.10, 0.52], color: [0.15, 0.18, 0.22], wrap: 0.4 },
-    Light { towards: [0.40, 0.52, -0.75], color: [0.24, 0.26, 0.30], wrap: 0.1 },
+    Light { towards: [-0.45, 0.66, 0.60], color: [1.22, 1.15, 1.04], wrap: 0.12 },
+    Light { towards: [0.85, 0.10, 0.52], color: [0.13, 0.16, 0.21], wrap: 0.4 },
+    Light { towards: [0.40, 0.52, -0.75], color: [0.30, 0.32, 0.36], wrap: 0.1 },
 ];
 
 /// Light from everywhere, from above and from below.
-const SKY: [f64; 3] = [0.36, 0.39, 0.44];
-const EARTH: [f64; 3] = [0.22, 0.20, 0.19];
+const SKY: [f64; 3] = [0.27, 0.30, 0.35];
+const EARTH: [f64; 3] = [0.16, 0.145, 0.14];
 
 /// Strength and sharpness of the sheen.
 const SHEEN: f64 = 0.07;
@@ -44,7 +44,7 @@ pub(crate) fn shade(color: DVec3, normal: DVec3, towards_eye: DVec3, open: f64) 
     }
     // Edges seen at a grazing angle pick up a little of the bright surroundings.
     let grazing = (1.0 - normal.dot(towards_eye).clamp(0.0, 1.0)).powi(4) * 0.10 * open;
-    color * light + sheen + DVec3::splat(grazing)
+    compressed(color * light + sheen + DVec3::splat(grazing))
 }
 
 /// sRGB in [0, 1] to linear light.
@@ -55,17 +55,28 @@ pub(crate) fn linear(color: [f64; 3]) -> DVec3 {
     }))
 }
 
-/// Linear light to sRGB in [0, 1]; what is too bright runs softly into white.
-pub(crate) fn display(color: DVec3) -> DVec3 {
-    DVec3::from(color.to_array().map(|c| {
-        let c = if c < SHOULDER { c.max(0.0) } else { SHOULDER + ROOM * (1.0 - ((SHOULDER - c) / ROOM).exp()) };
-        if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
-    }))
+/// What is too bright runs softly into white.
+fn compressed(light: DVec3) -> DVec3 {
+    DVec3::from(
+        light.to_array().map(
+            |c| {
+                if c < SHOULDER { c } else { SHOULDER + ROOM * (1.0 - ((SHOULDER - c) / ROOM).exp()) }
+            },
+        ),
+    )
 }
 
 /// Where tones begin to be compressed, and what is left above.
-const SHOULDER: f64 = 0.75;
+const SHOULDER: f64 = 0.7;
 const ROOM: f64 = 1.0 - SHOULDER;
+
+/// Linear light to sRGB.
+pub(crate) fn display(color: DVec3) -> DVec3 {
+    DVec3::from(color.to_array().map(|c| {
+        let c = c.clamp(0.0, 1.0);
+        if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+    }))
+}
 
 /// To the nearest of 256 levels.
 pub(crate) fn bytes(color: DVec3) -> [u8; 3] {

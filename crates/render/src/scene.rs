@@ -1,11 +1,12 @@
 //! The mesh in a unit frame, its tree, and what a ray sees.
 
+use crate::ambient::REACH;
 use crate::camera::{Camera, Ray, unit};
 use crate::color::Paint;
 use crate::normals::corner_normals;
 use crate::params::{Error, Ground, Params};
 use glam::DVec3;
-use mesh_core::{FaceId, Faces, TriMesh, VertexId};
+use mesh_core::{Bounds, FaceId, Faces, TriMesh, VertexId};
 use mesh_query::TriBvh;
 
 pub(crate) struct Scene {
@@ -24,6 +25,8 @@ struct Floor {
     height: f64,
     /// How clearly it is seen: 0 for a view along it.
     strength: f64,
+    /// Where the model's shadow may fall.
+    reach: Bounds,
 }
 
 /// What a ray sees.
@@ -84,7 +87,12 @@ impl Scene {
         if let (Ground::Shadow, Some(up)) = (params.ground, unit(params.up)) {
             let height = self.mesh.faces.iter().flatten().map(|&v| self.at(v).dot(up)).fold(f64::INFINITY, f64::min);
             let strength = ((camera.axes[2].dot(up) - 0.05) / 0.2).clamp(0.0, 1.0);
-            self.floor = (strength > 0.0).then_some(Floor { up, height, strength });
+            self.floor = (strength > 0.0).then(|| Floor {
+                up,
+                height,
+                strength,
+                reach: self.tree.bounds().inflated(0.75 * REACH),
+            });
         }
         self
     }
@@ -113,8 +121,7 @@ impl Floor {
     fn seen_along(&self, ray: &Ray) -> Option<Sight> {
         let t = (self.height - ray.origin.dot(self.up)) / ray.direction.dot(self.up);
         let point = ray.origin + t * ray.direction;
-        // No shadow reaches much farther than the model, which is within √3 of the origin.
-        (t > 0.0 && t.is_finite() && point.length() < 3.0)
+        (t > 0.0 && self.reach.overlaps(&Bounds { min: point, max: point }))
             .then(|| Sight::Floor(Place { point, normal: self.up }, self.strength))
     }
 }

@@ -7,7 +7,7 @@ use crate::params::Wireframe;
 use glam::{DVec2, DVec3, DVec4};
 
 /// Triangles lower than the first, in pixels, show no lines; above the second they show them in full.
-const FADE: [f64; 2] = [2.5, 9.0];
+const FADE: [f64; 2] = [2.0, 6.0];
 
 /// The line's colour and coverage at a place on the picture inside a triangle.
 pub(crate) fn line_over(camera: &Camera, wire: &Wireframe, triangle: [DVec3; 3], at: DVec2) -> DVec4 {
