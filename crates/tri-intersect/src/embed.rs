@@ -11,12 +11,14 @@
 //! | `normalise.rs` | addresses made canonical: snapping, repeats, excursions around a vertex |
 //! | `arrange.rs` | vertices of the result, points sorted along edges, pieces of curve sorted by face |
 //! | `face.rs` | the triangulation of one crossed face |
+//! | `small.rs` | the same for few chains, without a general triangulation |
 //! | `flood.rs` | the parts into which embedded curves divide a mesh |
 
 mod arrange;
 mod face;
 mod flood;
 mod normalise;
+mod small;
 
 pub use flood::{curve_edges, faces_left_of, flood};
 
@@ -67,16 +69,22 @@ impl SurfaceCurve {
 /// How curves are embedded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmbedParams {
-    /// Points nearer to an edge than this share of the face's height over it move onto the edge, and points nearer to a vertex than this
-    /// share of the edge move onto the vertex; in [0, 0.25]. A share of the triangle's own size, so that needles are treated as well as
-    /// equilateral ones. 1e-3 moves a curve by less than the sagitta of any mesh worth blending and rules out
-    /// new edges a million times shorter than the old. Points are not moved where that would make curves meet.
+    /// Points nearer to an edge than this share of the face's height over it move onto the edge, and points nearer to a
+    /// vertex than this share of the edge move onto the vertex; in [0, 0.25]. A share of the triangle's own size, so
+    /// that needles are treated as well as equilateral ones.
+    ///
+    /// Points are not moved where that would make curves meet, so a larger snap costs accuracy only. It buys shape: of the pieces left by
+    /// 415 pairs of plane sections of real meshes, 1.7% had an angle under 1° at 0, 1.6% at 1e-3, 1.0% at 1e-2, 0.1%
+    /// at 5e-2.
     pub snap: f64,
+    /// No point is moved farther than this, in model units. Set it where triangles may be large beside what the curves bound; a
+    /// hundredth of a fillet's radius, say.
+    pub reach: f64,
 }
 
 impl Default for EmbedParams {
     fn default() -> Self {
-        Self { snap: 1e-3 }
+        Self { snap: 1e-2, reach: f64::INFINITY }
     }
 }
 
@@ -177,14 +185,14 @@ pub fn embed<M: Adjacency + Positions + Sync>(
             .iter()
             .zip(&exact)
             .enumerate()
-            .map(|(c, (curve, exact))| normalise(mesh, c, curve, exact, params.snap))
+            .map(|(c, (curve, exact))| normalise(mesh, c, curve, exact, params))
             .collect::<Result<Vec<_>, _>>()?;
         let (arrangement, mut clashes) = Arrangement::new(mesh, &chains)?;
         if clashes.is_empty() {
             watch.step("embed", 0.3)?;
             let jobs = arrangement.crossed_faces(mesh);
             let pieces: Vec<_> =
-                jobs.par_iter().with_min_len(16).map(|&f| face::split(mesh, &arrangement, f)).collect();
+                jobs.par_iter().with_min_len(128).map(|&f| face::split(mesh, &arrangement, f)).collect();
             let mut whole = Vec::with_capacity(pieces.len());
             for (piece, &f) in pieces.into_iter().zip(&jobs) {
                 match piece {

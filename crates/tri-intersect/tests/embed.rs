@@ -105,9 +105,9 @@ fn check(input: &Mesh, curves: &[SurfaceCurve], out: &Embedded) -> Mesh {
         }
         assert_eq!(places.len(), curve.points.len());
         for (point, &k) in curve.points.iter().zip(places) {
-            // Merged runs around a vertex move by several snaps; edges of these meshes are under 1.2 long.
+            // Merged runs around a vertex move by several snaps; edges of these meshes are mostly under 0.6 long.
             let moved = point.position(input).distance(mesh.position(chain[k]));
-            assert!(moved < 0.01, "{moved}");
+            assert!(moved < 0.04, "{moved}");
         }
     }
     mesh

@@ -1,6 +1,7 @@
 //! The triangulation of one crossed face: a polygon of its corners and the points on its sides, with pieces of curve in it.
 
 use super::arrange::{Arrangement, Segment};
+use super::small;
 use glam::DVec3;
 use mesh_core::{Adjacency, FaceId, HalfedgeId, Positions, SurfacePoint, VertexId};
 use robust::{Coord, orient2d};
@@ -34,7 +35,7 @@ pub(super) fn split<M: Adjacency + Positions>(mesh: &M, all: &Arrangement, f: Fa
     let projected = polygon.projected();
     let sound = projected
         .as_ref()
-        .and_then(|points| polygon.split_by_one_chord(points).or_else(|| polygon.triangulate(points).ok()));
+        .and_then(|points| polygon.triangulate_small(points).or_else(|| polygon.triangulate(points).ok()));
     let (triangles, flattened) = if let Some(triangles) = sound {
         (triangles, false)
     } else {
@@ -172,32 +173,21 @@ impl<'a> Polygon<'a> {
         }
     }
 
-    /// The common case, one piece of curve from side to side, without a general triangulation.
-    fn split_by_one_chord(&self, points: &[Flat]) -> Option<Vec<[usize; 3]>> {
-        let count = self.sides.len();
-        if count != self.vertices.len() || count > 5 {
-            return None;
+    /// The common case, few chains from side to side.
+    fn triangulate_small(&self, points: &[Flat]) -> Option<Vec<[usize; 3]>> {
+        let mut triangles = Vec::with_capacity(2 * self.vertices.len() - self.sides.len());
+        let score = |t: [usize; 3]| {
+            if !self.on_one_side(t) && turn(points, t) > 0.0 { self.roundness(t) } else { 0.0 }
+        };
+        for part in small::divide(self.sides.len(), &self.ends)? {
+            small::triangulate(&part, score, &mut triangles)?;
         }
-        let &[[i, j]] = self.ends.as_slice() else { return None };
-        let (i, j) = (i.min(j), i.max(j));
-        let mut triangles = Vec::with_capacity(count - 2);
-        for (from, steps) in [(i, j - i), (j, i + count - j)] {
-            let corner = |k: usize| (from + k) % count;
-            match steps {
-                2 => triangles.push([0, 1, 2].map(corner)),
-                3 => {
-                    let halves = [[[0, 1, 2], [0, 2, 3]], [[0, 1, 3], [1, 2, 3]]].map(|d| d.map(|t| t.map(corner)));
-                    let worst = halves.map(|d| {
-                        d.iter()
-                            .map(|t| if positive(points, *t) { self.roundness(*t) } else { -1.0 })
-                            .fold(1.0, f64::min)
-                    });
-                    triangles.extend(halves[usize::from(worst[1] > worst[0])]);
-                }
-                _ => return None,
-            }
-        }
-        triangles.iter().all(|t| positive(points, *t)).then_some(triangles)
+        Some(triangles)
+    }
+
+    /// Whether all three corners lie on one side of the face.
+    fn on_one_side(&self, t: [usize; 3]) -> bool {
+        t.iter().fold(7, |m, &k| m & self.sides.get(k).copied().unwrap_or(0)) != 0
     }
 
     /// Area over squared longest side: 0 for a needle, 0.43 for an equilateral triangle.
@@ -247,9 +237,8 @@ impl<'a> Polygon<'a> {
             return Err(clashes);
         }
         // What rounding has left between a side and the chain of its points has all three corners on that side.
-        let outside = |t: &[usize; 3]| t.iter().fold(7, |m, &k| m & self.sides.get(k).copied().unwrap_or(0)) != 0;
         let triangles: Vec<_> =
-            cdt.inner_faces().map(|f| f.vertices().map(|v| v.index())).filter(|t| !outside(t)).collect();
+            cdt.inner_faces().map(|f| f.vertices().map(|v| v.index())).filter(|t| !self.on_one_side(*t)).collect();
         if triangles.len() == 2 * (points.len() - boundary) + boundary - 2 {
             Ok(triangles)
         } else {
