@@ -237,6 +237,82 @@ fn figure_of_eight_is_refused() {
     assert!(found.iter().all(|c| c.curves == [0, 0]));
 }
 
+/// Powers of two change no bit but the exponent, so neither may anything else change; and nothing panics where
+/// squares overflow or vanish.
+#[test]
+fn scale_changes_nothing() {
+    let mesh = bumpy(2, 0.03);
+    let axis = DVec3::new(0.2, -0.4, 0.7).normalize();
+    let curves = [circle(&mesh, axis, 1.0, 0.1, 90), circle(&mesh, axis, 1.1, 0.1, 40)];
+    let out = run(&mesh, &curves).unwrap();
+    let scaled = |exponent: i32| {
+        let mut mesh = mesh.mesh().clone();
+        mesh.positions.iter_mut().for_each(|p| *p *= 2f64.powi(exponent));
+        run(&Connected::new(mesh).unwrap(), &curves).unwrap()
+    };
+    for exponent in [-100, -30, 30, 100] {
+        let other = scaled(exponent);
+        assert_eq!((&other.mesh.faces, &other.curves), (&out.mesh.faces, &out.curves));
+        for (p, q) in out.mesh.positions.iter().zip(&other.mesh.positions) {
+            assert_eq!(*p * 2f64.powi(exponent), *q);
+        }
+    }
+    for exponent in [-1000, 1000] {
+        let other = scaled(exponent);
+        assert_eq!((other.mesh.faces.len(), &other.curves), (out.mesh.faces.len(), &out.curves));
+        assert!(other.flattened.is_empty());
+    }
+}
+
+/// A face without area between two sound ones: the curve passes, and the face is reported.
+#[test]
+fn flat_faces_are_crossed() {
+    let mut mesh = shapes::cuboid(DVec3::ONE);
+    let cube = Connected::new(mesh.clone()).unwrap();
+    let h = cube.face_ids().map(|f| HalfedgeId::new(f, 0)).find(|&h| {
+        let (a, b) = (cube.position(cube.tail(h)), cube.position(cube.head(h)));
+        (a - b).abs().element_sum() == 1.0
+    });
+    let h = h.unwrap();
+    // The edge's middle, exact in f64, is put on one side of the edge only.
+    let (a, b, c) = (cube.tail(h), cube.head(h), cube.head(h.next()));
+    let middle = VertexId::from(mesh.positions.len());
+    mesh.positions.push(0.5 * (cube.position(a) + cube.position(b)));
+    mesh.faces[h.face().index()] = [a, middle, c];
+    mesh.faces.extend([[middle, b, c], [a, b, middle]]);
+    let flat = FaceId::from(mesh.faces.len() - 1);
+    let mesh = Connected::new(mesh).unwrap();
+    let side = HalfedgeId::new(flat, 0);
+    let beyond = mesh.twin(side).unwrap().face();
+    let points = vec![
+        SurfacePoint::Face { face: beyond, barycentric: [0.4, 0.3, 0.3] },
+        SurfacePoint::Edge { halfedge: side, t: 0.3 },
+        SurfacePoint::Edge { halfedge: HalfedgeId::new(h.face(), 0), t: 0.6 },
+        SurfacePoint::Face { face: h.face(), barycentric: [0.4, 0.3, 0.3] },
+    ];
+    let out = run(&mesh, &[SurfaceCurve { points, closed: false }]).unwrap();
+    let cut = Connected::new(out.mesh.clone()).unwrap();
+    assert_eq!(out.flattened, [flat]);
+    assert_eq!(out.curves[0].len(), 4);
+    assert_eq!(cut.face_count() - mesh.face_count(), 2 * (cut.vertex_count() - mesh.vertex_count()));
+    assert!((area(cut.mesh()) - 6.0).abs() < 1e-12);
+}
+
+/// Nothing moves farther than the reach, however large the triangles; twice, where an edge leads on to a vertex.
+#[test]
+fn reach_caps_every_move() {
+    let mesh = bumpy(1, 0.03);
+    let curves = [circle(&mesh, DVec3::new(0.1, 0.5, 0.8).normalize(), 1.0, 0.1, 500)];
+    let far = |params: EmbedParams| {
+        let out = embed(&mesh, &curves, &params, &Watch::default()).unwrap();
+        let moved = curves[0].points.iter().zip(&out.places[0]);
+        let moved = moved.map(|(p, &k)| p.position(&mesh).distance(out.mesh.positions[out.curves[0][k].index()]));
+        moved.fold(0.0, f64::max)
+    };
+    assert!(far(EmbedParams { snap: 0.1, ..EmbedParams::default() }) > 0.02);
+    assert!(far(EmbedParams { snap: 0.1, reach: 1e-3 }) <= 4e-3);
+}
+
 #[test]
 fn bad_input_is_named() {
     let mesh = Connected::new(shapes::cuboid(DVec3::ONE)).unwrap();

@@ -87,15 +87,14 @@ fn push<M: Adjacency + Positions>(mesh: &M, nodes: &mut Vec<Node>, node: Node) {
     nodes.push(node);
 }
 
-/// Whether two nodes of the same edge or face differ by no more than the snap.
+/// Whether two consecutive nodes are one but for rounding or, on an edge, which a curve may run along in one step, for the snap.
 fn nearly_same(a: &Node, b: &Node) -> bool {
-    let snap = a.snap.min(b.snap);
     match (a.at, b.at) {
         (SurfacePoint::Edge { halfedge: h, t: s }, SurfacePoint::Edge { halfedge: g, t }) => {
-            h == g && (s - t).abs() <= snap
+            h == g && (s - t).abs() <= a.snap.min(b.snap)
         }
         (SurfacePoint::Face { face: f, barycentric: s }, SurfacePoint::Face { face: g, barycentric: t }) => {
-            f == g && s.iter().zip(t).all(|(s, t)| (s - t).abs() <= snap)
+            f == g && s.iter().zip(t).all(|(s, t)| (s - t).abs() <= LEAST_SNAP)
         }
         (a, b) => a == b,
     }
