@@ -1,0 +1,190 @@
+//! From a model to bytes and files. A file appears whole or not at all.
+
+use crate::encode::{Content, Encoded, Target};
+use crate::error::Error;
+use crate::format::Format;
+use crate::model::{Model, Note};
+use crate::weld::same_places;
+use crate::{obj, off, ply, stl};
+use mesh_core::{TriMesh, VertexId};
+use rayon::prelude::*;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// What [`write`] put on disk.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Written {
+    /// Every file written, the named one last.
+    pub files: Vec<PathBuf>,
+    /// Their size in all.
+    pub bytes: u64,
+    /// What the format could not hold.
+    pub notes: Vec<Note>,
+}
+
+/// Writes a mesh file and its side files; the extension tells the format.
+///
+/// Everything is first written to temporary files beside the targets, then renamed, side files first. On any failure
+/// the existing files are as they were and no temporary file stays. A target that is no regular file (a pipe, a
+/// device) is written directly.
+///
+/// # Errors
+/// [`Error::UnknownFormat`], [`Error::Unrepresentable`], [`Error::Inconsistent`], [`Error::Unwritable`].
+pub fn write(model: &Model, path: &Path) -> Result<Written, Error> {
+    write_as(model, path, Format::from_path(path)?)
+}
+
+/// Writes a mesh file in a given format, whatever its extension. See [`write`].
+///
+/// # Errors
+/// As for [`write`].
+pub fn write_as(model: &Model, path: &Path, format: Format) -> Result<Written, Error> {
+    // A link is written through, not replaced.
+    let real = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let encoded = encode(model, format, Some(&Target::of(path)))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut staged = Staged::default();
+    for side in &encoded.sides {
+        let target = folder.join(&side.name);
+        match &side.content {
+            Content::Bytes(bytes) => staged.add(&target, |f| f.write_all(bytes))?,
+            Content::Shared(bytes) => staged.add(&target, |f| f.write_all(bytes))?,
+            Content::CopyOf(from) => staged.add(&target, |f| io::copy(&mut fs::File::open(from)?, f).map(|_| ()))?,
+        }
+    }
+    staged.add(&real, |f| encoded.body.iter().try_for_each(|piece| f.write_all(piece)))?;
+    let (mut files, bytes) = staged.commit()?;
+    if let Some(last) = files.last_mut() {
+        path.clone_into(last);
+    }
+    Ok(Written { files, bytes, notes: encoded.notes.resolve(&[]) })
+}
+
+/// The file that [`write`] would make, as bytes, without side files: OBJ names materials that no library describes,
+/// glTF holds its buffer inside.
+///
+/// # Errors
+/// [`Error::Unrepresentable`], [`Error::Inconsistent`].
+pub fn to_bytes(model: &Model, format: Format) -> Result<Vec<u8>, Error> {
+    Ok(encode(model, format, None)?.body.concat())
+}
+
+/// The mesh as `format` will hold it, or `None` where that is the mesh itself. glTF and STL round positions to f32;
+/// STL also merges those that become equal, for it holds no indices. Faces keep their number and order, so those
+/// that rounding folds can be found by validation. Coordinates beyond f32 become infinite.
+pub fn as_written(model: &Model, format: Format) -> Option<TriMesh> {
+    if format.is_lossless() {
+        return None;
+    }
+    let round = |p: &glam::DVec3| p.as_vec3().as_dvec3();
+    let mut mesh =
+        TriMesh { positions: model.mesh.positions.par_iter().map(round).collect(), faces: model.mesh.faces.clone() };
+    if format == Format::Stl {
+        let first = same_places(&mesh.positions);
+        let mut id = vec![VertexId(0); first.len()];
+        let mut kept = 0;
+        for (v, &f) in first.iter().enumerate() {
+            if f as usize == v {
+                id[v] = VertexId::from(kept);
+                mesh.positions[kept] = mesh.positions[v];
+                kept += 1;
+            } else {
+                id[v] = id[f as usize];
+            }
+        }
+        mesh.positions.truncate(kept);
+        mesh.faces.as_flattened_mut().iter_mut().for_each(|v| *v = id[v.index()]);
+    }
+    Some(mesh)
+}
+
+fn encode(model: &Model, format: Format, target: Option<&Target>) -> Result<Encoded, Error> {
+    if !model.is_consistent() {
+        return Err(Error::Inconsistent);
+    }
+    check_positions(&model.mesh, format)?;
+    Ok(match format {
+        Format::Obj => obj::encode(model, target),
+        Format::Off => off::encode(model),
+        Format::Ply => ply::encode(model, target),
+        Format::Stl => stl::encode(model),
+        Format::Glb | Format::Gltf | Format::ThreeMf => Encoded::default(),
+    })
+}
+
+fn check_positions(mesh: &TriMesh, format: Format) -> Result<(), Error> {
+    let lossless = format.is_lossless();
+    let bad =
+        mesh.positions.par_iter().position_first(|p| !if lossless { p.is_finite() } else { p.as_vec3().is_finite() });
+    let Some(bad) = bad else { return Ok(()) };
+    let place = mesh.positions[bad];
+    let reason = if place.is_finite() { "it holds numbers up to 3.4e38" } else { "it holds finite numbers only" };
+    Err(Error::Unrepresentable { vertex: VertexId::from(bad), place, format, reason })
+}
+
+/// Files written beside their targets and not yet in place. What is not committed is removed.
+#[derive(Default)]
+struct Staged {
+    files: Vec<(PathBuf, PathBuf)>, // (temporary, target)
+    bytes: u64,
+}
+
+impl Staged {
+    fn add(&mut self, target: &Path, fill: impl FnOnce(&mut fs::File) -> io::Result<()>) -> Result<(), Error> {
+        static COUNTER: AtomicU64 = AtomicU64::new(0);
+        let unwritable = |source| Error::Unwritable { path: target.to_owned(), source };
+        let known = fs::metadata(target);
+        if known.as_ref().is_ok_and(fs::Metadata::is_dir) {
+            return Err(unwritable(io::Error::from(io::ErrorKind::IsADirectory)));
+        }
+        if known.is_ok_and(|m| !m.is_file()) {
+            let mut file = fs::OpenOptions::new().write(true).open(target).map_err(unwritable)?;
+            return fill(&mut file).map_err(unwritable);
+        }
+        let name = target.file_name().ok_or_else(|| unwritable(io::Error::from(io::ErrorKind::InvalidFilename)))?;
+        let number = COUNTER.fetch_add(1, Ordering::Relaxed);
+        let temporary =
+            target.with_file_name(format!(".{}.{}-{number}.part", name.to_string_lossy(), std::process::id()));
+        let mut file = fs::OpenOptions::new().write(true).create_new(true).open(&temporary).map_err(unwritable)?;
+        self.files.push((temporary, target.to_owned()));
+        fill(&mut file).map_err(unwritable)?;
+        self.bytes += file.metadata().map_err(unwritable)?.len();
+        Ok(())
+    }
+
+    /// Renames everything into place, in order. If one rename fails, the targets renamed before it get their old
+    /// contents back.
+    fn commit(mut self) -> Result<(Vec<PathBuf>, u64), Error> {
+        let files = std::mem::take(&mut self.files);
+        let mut backups: Vec<Option<PathBuf>> = vec![];
+        for (i, (temporary, target)) in files.iter().enumerate() {
+            // Only needed if something can still fail after this rename.
+            let backup = (i + 1 < files.len()).then(|| temporary.with_extension("old"));
+            backups.push(backup.filter(|b| fs::hard_link(target, b).is_ok()));
+            if let Err(source) = fs::rename(temporary, target) {
+                for ((_, target), backup) in files[..i].iter().zip(&backups) {
+                    let _ = match backup {
+                        Some(backup) => fs::rename(backup, target),
+                        None => fs::remove_file(target),
+                    };
+                }
+                let path = target.clone();
+                backups.iter().flatten().for_each(|b| drop(fs::remove_file(b)));
+                self.files = files;
+                return Err(Error::Unwritable { path, source });
+            }
+        }
+        backups.iter().flatten().for_each(|b| drop(fs::remove_file(b)));
+        Ok((files.into_iter().map(|(_, target)| target).collect(), self.bytes))
+    }
+}
+
+impl Drop for Staged {
+    fn drop(&mut self) {
+        for (temporary, _) in &self.files {
+            let _ = fs::remove_file(temporary);
+        }
+    }
+}
