@@ -6,10 +6,11 @@
 //! better value re-opens a vertex, which is what obtuse triangles need in place of their special unfolding.
 
 use crate::ids::{EdgeId, FaceId, HalfedgeId, VertexId};
+use crate::sectors::Sectors;
 use crate::surface_point::SurfacePoint;
 use crate::traits::{Adjacency, Positions};
 use std::cmp::Ordering;
-use std::collections::{BinaryHeap, HashMap, HashSet};
+use std::collections::{BinaryHeap, HashMap};
 use std::hash::{BuildHasherDefault, Hasher};
 
 /// Where a flood starts.
@@ -257,44 +258,6 @@ fn from_line(length: f64, [x, y]: [f64; 2], [da, db]: [f64; 2]) -> Option<(f64, 
     let sin = (1.0 - cos * cos).sqrt();
     let foot = x - cos / sin * y;
     (sin > 0.0 && (0.0..=length).contains(&foot)).then_some((da + cos * x + sin * y, foot))
-}
-
-/// The sides of vertices on barriers. A side is named by its first corner, clockwise.
-struct Sectors {
-    barriers: HashSet<EdgeId>,
-    split: HashSet<VertexId>,
-}
-
-impl Sectors {
-    fn new<M: Adjacency>(mesh: &M, barriers: &[EdgeId]) -> Self {
-        let known = barriers.iter().copied().filter(|e| e.index() < 3 * mesh.face_count());
-        let ends = known.clone().map(|e| HalfedgeId(e.0)).flat_map(|h| [mesh.tail(h), mesh.head(h)]);
-        Self { split: ends.collect(), barriers: known.collect() }
-    }
-
-    fn key<M: Adjacency>(&self, mesh: &M, h: HalfedgeId) -> u32 {
-        let v = mesh.tail(h);
-        let first = mesh.outgoing(v).unwrap_or(h);
-        if self.split.is_empty() || !self.split.contains(&v) {
-            return first.0;
-        }
-        let mut start = h;
-        while !self.barriers.contains(&mesh.edge(start)) {
-            match mesh.twin(start).map(HalfedgeId::next) {
-                Some(before) if before != h => start = before,
-                Some(_) => return first.0,
-                None => break,
-            }
-        }
-        start.0
-    }
-
-    /// The next corner counter-clockwise on the same side.
-    fn turn<M: Adjacency>(&self, mesh: &M, h: HalfedgeId) -> Option<HalfedgeId> {
-        let side = h.prev();
-        let open = self.barriers.is_empty() || !self.barriers.contains(&mesh.edge(side));
-        mesh.twin(side).filter(|_| open)
-    }
 }
 
 /// An entry of the front; the heap's greatest is the nearest, ties by key.

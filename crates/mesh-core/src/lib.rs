@@ -18,11 +18,14 @@
 //! | `loops.rs`, `components.rs` | boundary loops and connected components |
 //! | `normal.rs` | normals of faces, vertices, sides and corners |
 //! | `measure.rs` | area, volume, edge lengths, dihedral angles, genus |
-//! | `geodesic.rs`, `path.rs` | distance floods with barriers, cheapest paths along edges |
+//! | `geodesic.rs`, `sectors.rs`, `path.rs` | distance floods with barriers, cheapest paths along edges |
 //! | `origin.rs`, `compose.rs` | provenance of vertices and faces, composed across stages |
 //! | `surface_point.rs` | a point on a mesh, by vertex, edge or face |
 //! | `trace.rs` | straight walks over the surface between two points |
 //! | `bounds.rs` | axis-aligned boxes |
+//! | `cotangent.rs` | cotangent weights, mixed areas, mean-curvature vectors |
+//! | `orient.rs`, `split.rs` | repair on request: orientation, copies at non-manifold places |
+//! | `conformance.rs` | checks for implementors of the traits, behind the feature `conformance` |
 //! | `watch.rs` | progress and cancellation |
 //! | `shapes/` | procedural shapes for tests and fixtures |
 
@@ -30,8 +33,11 @@ mod bounds;
 mod collinear;
 mod components;
 mod compose;
+#[cfg(any(test, feature = "conformance"))]
+pub mod conformance;
 mod connected;
 mod corner_table;
+mod cotangent;
 mod edge_groups;
 mod geodesic;
 mod ids;
@@ -40,9 +46,12 @@ pub mod map;
 mod measure;
 mod mesh;
 mod normal;
+mod orient;
 mod origin;
 mod path;
+mod sectors;
 pub mod shapes;
+mod split;
 mod surface_point;
 mod trace;
 mod traits;
@@ -54,6 +63,7 @@ pub use collinear::collinear;
 pub use components::{Components, components};
 pub use compose::Stage;
 pub use connected::{Connected, NotManifold};
+pub use cotangent::{cotangent_weight, cotangents, mean_curvature_vectors, mixed_areas};
 pub use geodesic::{Flood, FloodParams, Seed, Source, flood};
 pub use ids::{EdgeId, FaceId, HalfedgeId, VertexId};
 pub use loops::boundary_loops;
@@ -66,8 +76,10 @@ pub use normal::{
     area_vector, corner_angle, corner_normals, face_normal, face_normals, one_sided_normal, triangle_normal,
     vertex_normals,
 };
+pub use orient::orient;
 pub use origin::{FaceOrigin, Origins, VertexOrigin};
 pub use path::shortest_path;
+pub use split::split;
 pub use surface_point::SurfacePoint;
 pub use trace::{TraceError, TraceLimits, trace};
 pub use traits::{Adjacency, EditObserver, Faces, MeshSink, Positions, Ring};

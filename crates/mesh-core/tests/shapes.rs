@@ -105,6 +105,8 @@ fn the_teapot_has_its_openings_or_none() {
     }
     let all = bounds(&open.body).union(bounds(&open.lid)).union(bounds(&open.handle)).union(bounds(&open.spout));
     assert_eq!((all.min.z, all.max.z, all.min.x), (0.0, 3.15, -3.0));
+    // The tip of the spout, as every copy of the pot has it.
+    assert!((all.max.x - 3.434).abs() < 0.01, "{}", all.max.x);
     // The widest circle of the body, in the middle of a quarter: 0.125·2 + 0.375·2·(0.56 + 1), both coordinates.
     let widest = open.body.positions.iter().map(|p| p.truncate().length()).fold(0.0, f64::max);
     assert!((widest - 2.0 * SQRT_2 * (0.125 + 0.375 * 1.56)).abs() < 1e-12, "{widest}");
