@@ -3,15 +3,19 @@
 use crate::build::{TriBvh, corners};
 use crate::frame::inverse_power_of_two;
 use crate::stack::Stack;
-use glam::DVec3;
+use glam::{DVec3, Vec3A};
 use mesh_core::{FaceId, Faces, Positions};
 use obvhs::bvh2::node::Bvh2Node;
 
-/// Relative rounding of the ray's origin and of the slab test, with a wide margin.
-const SLACK: f64 = 1e-14;
+/// Relative rounding of the ray's origin and of the slab test, both in `f32`, with a wide margin. Boxes only sort out:
+/// what is hit is decided in `f64`.
+const SLACK: f32 = 1.0 / (1 << 20) as f32;
 
-/// Direction components below this share of the largest count as zero in the slab test.
-const STEEPEST: f64 = 1e-150;
+/// Direction components below this share of the largest count as this in the slab test.
+const STEEPEST: f32 = 1e-30;
+
+/// Origins farther than this, in box sizes, are beyond what even `f64` resolves.
+const FARTHEST: f64 = 1e15;
 
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +30,8 @@ pub struct RayHit {
 
 impl TriBvh {
     /// The first triangle that the ray meets at 0 ≤ t ≤ `max_t`, from either side. `direction` need not be of unit
-    /// length. `None` also when the direction is zero or anything is NaN.
+    /// length. `None` also when the direction is zero, anything is NaN, or the origin is more than 1e15 times the mesh's
+    /// size away.
     ///
     /// A ray through an edge or vertex of a closed mesh never slips between its triangles [WoopBenthinWald2013];
     /// a triangle seen exactly edge-on is not hit.
@@ -66,10 +71,10 @@ struct Ray {
     /// Box-unit parameter to the caller's.
     unit: f64,
     max_t: f64,
-    /// Origin in box coordinates, moved outward by the slack for the lower and the upper side of boxes.
-    above: DVec3,
-    below: DVec3,
-    inverse: DVec3,
+    /// Origin in box coordinates, moved by the slack so that lower sides of boxes come lower and upper sides higher.
+    above: Vec3A,
+    below: Vec3A,
+    inverse: Vec3A,
     /// The axis along which the ray is longest, and the two others in an order that keeps orientation.
     axes: [usize; 3],
     /// The shear that turns the ray into the longest axis, and 1/direction on that axis.
@@ -91,16 +96,21 @@ impl Ray {
             (kx, ky) = (ky, kx);
         }
         let local = tree.frame.local(origin);
-        let slack = DVec3::splat(SLACK * (1.0 + local.abs().max_element()));
-        let steep = DVec3::from_array(d.to_array().map(|x| if x.abs() < STEEPEST { STEEPEST } else { x }));
+        let distance = local.abs().max_element();
+        if distance > FARTHEST {
+            return None;
+        }
+        let slack = Vec3A::splat(SLACK * (1.0 + distance as f32));
+        let steep = d.as_vec3a();
+        let steep = Vec3A::select(steep.abs().cmplt(Vec3A::splat(STEEPEST)), Vec3A::splat(STEEPEST), steep);
         let unit = to_unit / tree.frame.scale;
         Some(Self {
             origin,
             scale: tree.frame.scale,
             unit,
             max_t: max_t / unit,
-            above: local + slack,
-            below: local - slack,
+            above: local.as_vec3a() + slack,
+            below: local.as_vec3a() - slack,
             inverse: steep.recip(),
             axes: [kx, ky, longest],
             shear: DVec3::new(d[kx] / d[longest], d[ky] / d[longest], d[longest].recip()),
@@ -109,13 +119,12 @@ impl Ray {
 
     /// Where the ray enters a box; infinite when it does not, or not in time.
     #[inline]
-    fn enters(&self, node: &Bvh2Node) -> f64 {
+    fn enters(&self, node: &Bvh2Node) -> f32 {
         let aabb = node.aabb();
-        let (lo, hi) = (aabb.min.as_dvec3(), aabb.max.as_dvec3());
-        let (t0, t1) = ((lo - self.above) * self.inverse, (hi - self.below) * self.inverse);
+        let (t0, t1) = ((aabb.min - self.above) * self.inverse, (aabb.max - self.below) * self.inverse);
         let near = t0.min(t1).max_element().max(0.0) * (1.0 - SLACK);
         let far = t0.max(t1).min_element() * (1.0 + SLACK);
-        if near <= far && near <= self.max_t { near } else { f64::INFINITY }
+        if near <= far && f64::from(near) <= self.max_t { near } else { f32::INFINITY }
     }
 
     /// The watertight test: the sign of each edge is computed from the two sheared corners alone, so the two faces of
@@ -141,11 +150,11 @@ impl Ray {
     /// Visits leaves near to far until `visit` says stop; whether it did.
     #[inline]
     fn descend(&mut self, tree: &TriBvh, mut visit: impl FnMut(&mut Self, FaceId) -> bool) -> bool {
-        let mut stack: Stack<(u32, f64)> = Stack::new();
+        let mut stack: Stack<(u32, f32)> = Stack::new();
         let mut next = Some((0, self.enters(&tree.nodes[0])));
         while let Some((index, entry)) = next {
             let node = &tree.nodes[index as usize];
-            if entry == f64::INFINITY || entry > self.max_t {
+            if entry == f32::INFINITY || f64::from(entry) > self.max_t {
                 next = stack.pop();
             } else if node.is_leaf() {
                 for &f in tree.leaf(node) {
@@ -158,7 +167,7 @@ impl Ray {
                 let (i, j) = (node.first_index, node.first_index + 1);
                 let (ti, tj) = (self.enters(&tree.nodes[i as usize]), self.enters(&tree.nodes[j as usize]));
                 let (near, far) = if ti <= tj { ((i, ti), (j, tj)) } else { ((j, tj), (i, ti)) };
-                if far.1 < f64::INFINITY {
+                if far.1 < f32::INFINITY {
                     stack.push(far);
                 }
                 next = Some(near);

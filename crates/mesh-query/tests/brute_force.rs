@@ -93,9 +93,9 @@ proptest! {
     }
 
     #[test]
-    fn rays_hit_what_every_triangle_alone_would_give(scene in scene(), o in point(), towards in point()) {
+    fn rays_hit_what_every_triangle_alone_would_give(scene in scene(), o in point(), towards in point(), far in prop_oneof![Just(2.0), Just(1e3)]) {
         let Scene { mesh, .. } = &scene;
-        let (origin, direction) = (scene.place(o * 2.0), (towards - o * 2.0) * scene.size);
+        let (origin, direction) = (scene.place(o * far), (towards - o * far) * scene.size);
         prop_assume!(direction.length() > 0.0);
         let twin = mesh.face_ids().filter_map(|f| {
             TriBvh::build_subset(mesh, &[f]).unwrap().ray_cast(mesh, origin, direction, f64::INFINITY)

@@ -4,10 +4,10 @@ use crate::curvature::{mean_curvature, percentile};
 use crate::light::linear;
 use crate::params::{Color, Error};
 use glam::{DVec3, DVec4};
-use mesh_core::{FaceId, TriMesh};
+use mesh_core::{FaceId, TriMesh, VertexId};
 
 /// Plain surfaces, and the inside of surfaces of any colour.
-const CLAY: [f64; 3] = [0.62, 0.71, 0.81];
+const CLAY: [f64; 3] = [0.64, 0.715, 0.80];
 const INSIDE: [f64; 3] = [0.80, 0.44, 0.33];
 
 /// Apart in hue and close in lightness, so that shading reads across them.
@@ -84,7 +84,7 @@ impl Paint {
         normal: DVec3,
         towards_eye: DVec3,
     ) -> DVec3 {
-        let corners = mesh.faces[face.index()].map(|v| v.index());
+        let corners = mesh.faces[face.index()].map(VertexId::index);
         let mix = |values: &[f64]| (0..3).map(|k| barycentric[k] * values[corners[k]]).sum::<f64>();
         match self {
             Self::One(color) => *color,

@@ -122,6 +122,6 @@ impl Floor {
         let t = (self.height - ray.origin.dot(self.up)) / ray.direction.dot(self.up);
         let point = ray.origin + t * ray.direction;
         (t > 0.0 && self.reach.overlaps(&Bounds { min: point, max: point }))
-            .then(|| Sight::Floor(Place { point, normal: self.up }, self.strength))
+            .then_some(Sight::Floor(Place { point, normal: self.up }, self.strength))
     }
 }
