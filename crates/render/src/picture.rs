@@ -18,7 +18,8 @@ const EDGE: f64 = 0.03;
 
 /// Draws a mesh.
 ///
-/// Time is O(pixels · log faces), about a second for 1024² pixels on two cores; memory about 250 bytes per pixel and
+/// Time is O(pixels · log faces), two to three seconds for 1024² pixels on two cores, most of it
+/// ambient occlusion; memory about 250 bytes per pixel and
 /// 300 per face.
 ///
 /// # Errors
