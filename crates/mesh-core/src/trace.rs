@@ -113,8 +113,16 @@ pub fn trace<M: Adjacency + Positions>(
     let (start, goal) = (from.position(mesh), to.position(mesh));
     let longest = from.faces(mesh).chain(to.faces(mesh)).map(|f| longest_edge(mesh, f)).fold(0.0, f64::max);
     let limit = limits.stretch * start.distance(goal) + limits.slack * longest;
-    PlaneWalk { mesh, start, goal, across: (goal - start).cross(normal).normalize_or_zero(), limit }
-        .run(from, to)
+    let across = (goal - start).cross(normal).normalize_or_zero();
+    // The surface at the start may look away from `normal`; the way that heads for the goal is tried first.
+    let mut walks = [across, -across].map(|across| PlaneWalk { mesh, start, goal, across, limit });
+    let heading = |walk: &PlaneWalk<M>| walk.first_exit(from).map_or(f64::NEG_INFINITY, |(heading, _)| heading);
+    if heading(&walks[1]) > heading(&walks[0]) {
+        walks.swap(0, 1);
+    }
+    walks
+        .iter()
+        .find_map(|walk| walk.run(from, to))
         .or_else(|| straightest_in_strip(mesh, from, to, limit, limits.faces))
         .ok_or(TraceError::Lost { from: start, to: goal, limit })
 }
@@ -140,7 +148,7 @@ impl<M: Adjacency + Positions> PlaneWalk<'_, M> {
         }
         let mut path = vec![];
         let (mut here, mut length) = (self.start, 0.0);
-        let mut exit = self.first_exit(from)?;
+        let (_, mut exit) = self.first_exit(from)?;
         loop {
             let crossing = self.crossing(exit);
             let place = crossing.position(self.mesh);
@@ -162,8 +170,8 @@ impl<M: Adjacency + Positions> PlaneWalk<'_, M> {
         }
     }
 
-    /// Where the section leaves the faces around `from`, towards the goal.
-    fn first_exit(&self, from: SurfacePoint) -> Option<HalfedgeId> {
+    /// Where the section leaves the faces around `from`, and how well that heads for the goal.
+    fn first_exit(&self, from: SurfacePoint) -> Option<(f64, HalfedgeId)> {
         let towards = self.goal - self.start;
         let mut best = None;
         for f in from.faces(self.mesh) {
@@ -179,7 +187,7 @@ impl<M: Adjacency + Positions> PlaneWalk<'_, M> {
                 }
             }
         }
-        best.map(|(_, h)| h)
+        best
     }
 
     fn side(&self, v: crate::ids::VertexId) -> f64 {

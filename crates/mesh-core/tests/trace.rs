@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use mesh_core::{
-    Adjacency, Connected, FaceId, Faces, HalfedgeId, Positions, SurfacePoint, TraceError, TraceLimits, TriMesh,
-    VertexId, shapes, trace,
+    Connected, FaceId, Faces, HalfedgeId, Positions, SurfacePoint, TraceError, TraceLimits, TriMesh, VertexId, shapes,
+    trace,
 };
 use proptest::prelude::*;
 
@@ -163,6 +163,12 @@ proptest! {
         back.reverse();
         prop_assert_eq!(back.len(), path.len());
         for (a, b) in path.iter().zip(&back) {
+            prop_assert!(a.position(&mesh).distance(b.position(&mesh)) < 1e-12);
+        }
+        // Which way the normal points does not matter.
+        let other = run(&mesh, from, to, -p - q);
+        prop_assert_eq!(other.len(), path.len());
+        for (a, b) in path.iter().zip(&other) {
             prop_assert!(a.position(&mesh).distance(b.position(&mesh)) < 1e-12);
         }
         // Without a usable plane the strip search finds a path of nearly the same length.

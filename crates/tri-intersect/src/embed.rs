@@ -6,6 +6,22 @@
 //! judge the points as they are stored. Where rounding leaves no room for that (a needle thinner than the spacing of the numbers), it is made
 //! in barycentric coordinates instead, and the face is reported.
 //!
+//! ```
+//! use mesh_core::{Connected, FaceId, SurfacePoint, Watch, shapes};
+//! use tri_intersect::embed::{EmbedParams, SurfaceCurve, curve_edges, embed, faces_left_of, flood};
+//! let cube = Connected::new(shapes::cuboid(glam::DVec3::ONE))?;
+//! // A triangle within a face of the cube, cut out.
+//! let corners = [[0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]];
+//! let points = corners.map(|barycentric| SurfacePoint::Face { face: FaceId(0), barycentric }).to_vec();
+//! let curves = [SurfaceCurve { points, closed: true }];
+//! let embedded = embed(&cube, &curves, &EmbedParams::default(), &Watch::default())?;
+//! let chain = &embedded.curves[0];
+//! let cut = Connected::new(embedded.mesh)?;
+//! let inside = flood(&cut, curve_edges(chain, true), &faces_left_of(&cut, chain, true));
+//! assert_eq!(inside.as_slice().iter().filter(|&&f| f).count(), 1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! | file | holds |
 //! |---|---|
 //! | `normalise.rs` | addresses made canonical: snapping, repeats, excursions around a vertex |
@@ -188,22 +204,20 @@ pub fn embed<M: Adjacency + Positions + Sync>(
             .map(|(c, (curve, exact))| normalise(mesh, c, curve, exact, params))
             .collect::<Result<Vec<_>, _>>()?;
         let (arrangement, mut clashes) = Arrangement::new(mesh, &chains)?;
+        watch.step("embed", 0.3)?;
+        let jobs = arrangement.crossed_faces(mesh);
+        // A face takes about a microsecond; smaller shares cost more to hand out than to do.
+        let pieces: Vec<_> = jobs.par_iter().with_min_len(128).map(|&f| face::split(mesh, &arrangement, f)).collect();
+        let mut whole = Vec::with_capacity(pieces.len());
+        for (piece, &f) in pieces.into_iter().zip(&jobs) {
+            match piece {
+                Ok(piece) => whole.push((f, piece)),
+                Err(found) => clashes.extend(found),
+            }
+        }
         if clashes.is_empty() {
-            watch.step("embed", 0.3)?;
-            let jobs = arrangement.crossed_faces(mesh);
-            let pieces: Vec<_> =
-                jobs.par_iter().with_min_len(128).map(|&f| face::split(mesh, &arrangement, f)).collect();
-            let mut whole = Vec::with_capacity(pieces.len());
-            for (piece, &f) in pieces.into_iter().zip(&jobs) {
-                match piece {
-                    Ok(piece) => whole.push((f, piece)),
-                    Err(found) => clashes.extend(found),
-                }
-            }
-            if clashes.is_empty() {
-                watch.step("embed", 0.8)?;
-                return assemble(mesh, &chains, &arrangement, whole);
-            }
+            watch.step("embed", 0.8)?;
+            return assemble(mesh, &chains, &arrangement, whole);
         }
         if !forbid_snapping(&chains, &clashes, &mut exact) {
             return Err(report(mesh, &chains, &arrangement, &clashes));
