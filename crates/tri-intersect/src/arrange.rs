@@ -87,6 +87,16 @@ pub(crate) struct Crossings {
     pub degenerate: Option<(usize, u32)>,
 }
 
+impl Crossings {
+    /// The error for a face without area in the way, if there is one.
+    pub(crate) fn degenerate_error(&self, parts: &[Part; 2]) -> Option<Error> {
+        self.degenerate.map(|(part, face)| {
+            let at = parts[part].mesh.mesh().triangle(FaceId(face))[0];
+            Error::Degenerate { part: part as u32, face: FaceId(face), at }
+        })
+    }
+}
+
 /// Intersects all candidate pairs.
 pub(crate) fn crossings(parts: &[Part; 2], pairs: &[[FaceId; 2]], watch: &Watch) -> Result<Crossings, Error> {
     watch.step("intersect", 0.0)?;
@@ -149,6 +159,8 @@ pub(crate) struct Arrangement {
     pub keys: Vec<Key>,
     pub places: Vec<DVec3>,
     pub parameters: Vec<f64>,
+    /// Every node that two meshes share, with one of its names, by node.
+    names: Vec<(u32, Key)>,
     /// Vertices of b that are vertices of a: (vertex of b, vertex of a), in order.
     pub twins: Vec<(u32, u32)>,
     /// For a and for b: (edge, node) for every node within an edge, in order along the edge.
@@ -205,8 +217,11 @@ impl Arrangement {
         let generic =
             |k: &Key| matches!(k, [Simplex::Edge(_), Simplex::Face(_)] | [Simplex::Face(_), Simplex::Edge(_)]);
         let lone = crossings.touches.iter().filter(|t| keys.binary_search(&t.1).is_err());
+        let mut names: Vec<(u32, Key)> = nodes.iter().copied().zip(keys.iter().copied()).collect();
+        names.par_sort_unstable();
         Self {
             counts,
+            names,
             touches: lone.map(|&(faces, key)| (faces, touched_place(parts, &key))).collect(),
             segments: crossings
                 .segments
@@ -237,6 +252,12 @@ impl Arrangement {
             Ok(i) => self.twins[i].1,
             Err(_) => self.counts[0] + vertex.0,
         }
+    }
+
+    /// What carries a shared node.
+    pub(crate) fn key(&self, node: u32) -> Key {
+        let i = self.names.partition_point(|n| n.0 < node);
+        self.names.get(i).map_or([Simplex::Vertex(node); 2], |n| n.1)
     }
 
     /// Where a node is.

@@ -98,6 +98,18 @@ pub struct Report {
     pub warnings: Vec<Warning>,
 }
 
+impl Report {
+    /// Adds what a later step did.
+    pub(crate) fn append(&mut self, step: Self) {
+        self.candidate_pairs += step.candidate_pairs;
+        self.crossing_pairs += step.crossing_pairs;
+        self.cut_faces = [0, 1].map(|w| self.cut_faces[w] + step.cut_faces[w]);
+        self.new_vertices += step.new_vertices;
+        self.stages.extend(step.stages);
+        self.warnings.extend(step.warnings);
+    }
+}
+
 /// Something unusual that was dealt with.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Warning {
@@ -155,9 +167,8 @@ pub fn boolean(
     let pairs = trees[0].overlapping_pairs(a.mesh(), &trees[1], b.mesh());
     clock.lap("pairs");
     let crossings = arrange::crossings(&parts, &pairs, watch)?;
-    if let Some((part, face)) = crossings.degenerate {
-        let at = parts[part].mesh.mesh().triangle(FaceId(face))[0];
-        return Err(Error::Degenerate { part: part as u32, face: FaceId(face), at });
+    if let Some(error) = crossings.degenerate_error(&parts) {
+        return Err(error);
     }
     clock.lap("crossings");
     let arrangement = Arrangement::new(&parts, &crossings);

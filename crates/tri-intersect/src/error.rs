@@ -83,3 +83,19 @@ pub enum Error {
     #[error("nothing is left: {0}")]
     Empty(&'static str),
 }
+
+impl Error {
+    /// The same error, when what the operation saw as part 1 is really part `number`.
+    pub(crate) fn renumbered(mut self, number: u32) -> Self {
+        if let Self::NotFinite { part, .. }
+        | Self::Open { part, .. }
+        | Self::InsideOut { part, .. }
+        | Self::Degenerate { part, .. }
+        | Self::Tangled { part, .. } = &mut self
+            && *part == 1
+        {
+            *part = number;
+        }
+        self
+    }
+}

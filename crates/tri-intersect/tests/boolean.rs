@@ -1,9 +1,10 @@
 //! Booleans against what does not share their mistakes: volumes, symmetry, grids, and the exact self-intersection test.
 
 use glam::DVec3;
-use mesh_core::{Connected, Faces, TriMesh, VertexOrigin, Watch, shapes};
+use mesh_core::{Connected, FaceOrigin, Faces, TriMesh, VertexOrigin, Watch, shapes};
 use proptest::prelude::*;
-use tri_intersect::{Boolean, Error, Operation, Params, boolean, self_intersections};
+use std::collections::HashMap;
+use tri_intersect::{Boolean, Error, Operation, Params, boolean, boolean_all, self_intersections, union_all};
 
 fn moved(mut mesh: TriMesh, by: DVec3) -> TriMesh {
     mesh.positions.iter_mut().for_each(|p| *p += by);
@@ -32,16 +33,20 @@ fn checked_volume(a: &TriMesh, b: &TriMesh, operation: Operation) -> f64 {
     }
 }
 
+/// Everything that must hold of any result.
 fn check(a: &TriMesh, b: &TriMesh, result: &Boolean) {
-    let mesh = Connected::new(result.mesh.clone()).unwrap_or_else(|e| panic!("{e}\n{a:?}\n{b:?}"));
+    check_parts(&[a, b], result);
+}
+
+fn check_parts(parts: &[&TriMesh], result: &Boolean) {
+    let mesh = Connected::new(result.mesh.clone()).unwrap_or_else(|e| panic!("{e}\n{parts:?}"));
     assert!(mesh_core::boundary_loops(&mesh).is_empty(), "open");
     let touches = result.report.warnings.iter().any(|w| matches!(w, tri_intersect::Warning::Contact { .. }));
     if !touches {
         let bad = self_intersections(&result.mesh, &Watch::default()).expect("finite");
-        assert!(bad.is_empty(), "{bad:?}\n{a:?}\n{b:?}\n{:?}", result.mesh);
+        assert!(bad.is_empty(), "{bad:?}\n{parts:?}\n{:?}", result.mesh);
     }
-    let parts = [a, b];
-    let size = mesh_core::Bounds::of(a.positions.iter().chain(&b.positions).copied()).diagonal();
+    let size = mesh_core::Bounds::of(parts.iter().flat_map(|m| &m.positions).copied()).diagonal();
     for v in result.mesh.vertex_ids() {
         let p = result.mesh.positions[v.index()];
         match result.origins.vertices[v] {
@@ -50,11 +55,40 @@ fn check(a: &TriMesh, b: &TriMesh, result: &Boolean) {
                 let [x, y] = ends.map(|v| parts[part as usize].positions[v.index()]);
                 assert!((x + t * (y - x)).distance(p) <= 1e-14 * size);
             }
+            VertexOrigin::Face { part, face, barycentric: [u, v, w] } => {
+                let [x, y, z] = parts[part as usize].triangle(face);
+                assert!((u * x + v * y + w * z).distance(p) <= 1e-14 * size);
+            }
             VertexOrigin::New { stage: "contact" } => assert!(touches),
             o => panic!("{o:?}"),
         }
     }
-    assert!(result.seams.iter().all(|s| s.closed));
+    let mut sides = HashMap::new();
+    for f in result.mesh.face_ids() {
+        let c = result.mesh.corners(f);
+        let (FaceOrigin::Input { part, face } | FaceOrigin::Piece { part, face }) = result.origins.faces[f] else {
+            panic!("a new face")
+        };
+        (0..3).for_each(|k| assert!(sides.insert((c[k], c[(k + 1) % 3]), part).is_none()));
+        // Faces that claim to be whole have the corners they had, to the bit; pieces lie in the plane of their face.
+        let triangle = parts[part as usize].triangle(face);
+        match result.origins.faces[f] {
+            FaceOrigin::Input { .. } => assert!(result.mesh.triangle(f).iter().all(|p| triangle.contains(p))),
+            _ => {
+                let n = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalize();
+                assert!(result.mesh.triangle(f).iter().all(|p| (*p - triangle[0]).dot(n).abs() <= 1e-14 * size));
+            }
+        }
+    }
+    // Along a seam the lower part is on the left and another one on the right.
+    for seam in &result.seams {
+        assert!(seam.closed || parts.len() > 2);
+        let n = seam.vertices.len();
+        for i in 0..n - usize::from(!seam.closed) {
+            let (u, v) = (seam.vertices[i], seam.vertices[(i + 1) % n]);
+            assert!(sides[&(u, v)] < sides[&(v, u)]);
+        }
+    }
 }
 
 /// |A∪B| + |A∩B| = |A| + |B|, |A−B| = |A| − |A∩B|, and the same with the parts exchanged.
@@ -107,6 +141,106 @@ fn same_mesh_twice() {
     volumes_add_up(&a, &a.clone());
     let union = run(&a, &a, Operation::Union).unwrap();
     assert_eq!(union.mesh.positions, a.positions);
+}
+
+/// Seven spheres in a chain, each overlapping the next, and a plate through all of them.
+#[test]
+fn many_parts() {
+    let ball = shapes::icosphere(0.6, 2);
+    let mut parts: Vec<TriMesh> =
+        (0..5).map(|i| moved(ball.clone(), DVec3::new(f64::from(i) * 0.8, 0.01, 0.02))).collect();
+    parts.push(moved(shapes::cuboid(DVec3::new(6.0, 3.0, 0.3)), DVec3::new(1.4, 0.0, 0.0)));
+    let connected: Vec<_> = parts.iter().map(|m| Connected::new(m.clone()).unwrap()).collect();
+    let all: Vec<_> = connected.iter().collect();
+    let union = union_all(&all, &Params::default(), &Watch::default()).unwrap();
+    check_parts(&parts.iter().collect::<Vec<_>>(), &union);
+    // The spheres' common seams are still known: four, each cut in two by the plate, besides the plate's two.
+    assert_eq!(union.seams.iter().filter(|s| !s.closed).count(), 8);
+    assert_eq!(union.seams.iter().filter(|s| s.closed).count(), 2);
+    let reversed: Vec<_> = all.iter().rev().copied().collect();
+    let other = union_all(&reversed, &Params::default(), &Watch::default()).unwrap();
+    assert!((volume(&union.mesh) - volume(&other.mesh)).abs() < 1e-12);
+    let cut = boolean_all(&reversed, Operation::Difference, &Params::default(), &Watch::default()).unwrap();
+    let spheres = union_all(&all[..5], &Params::default(), &Watch::default()).unwrap();
+    assert!((volume(&cut.mesh) + volume(&spheres.mesh) - volume(&union.mesh)).abs() < 1e-12);
+}
+
+/// Disjoint, nested, hollow.
+#[test]
+fn parts_that_do_not_cross() {
+    let a = shapes::icosphere(1.0, 2);
+    volumes_add_up(&a, &moved(a.clone(), DVec3::new(3.0, 0.0, 0.0)));
+    let core = shapes::icosphere(0.5, 2);
+    volumes_add_up(&a, &core);
+    let hollow = run(&a, &core, Operation::Difference).unwrap().mesh;
+    volumes_add_up(&hollow, &shapes::icosphere(0.25, 2));
+    volumes_add_up(&hollow, &moved(shapes::icosphere(0.4, 2), DVec3::new(0.3, 0.1, 0.05)));
+    assert!(matches!(run(&core, &a, Operation::Difference), Err(Error::Empty(_))));
+}
+
+/// One thread and two give the same bits.
+#[test]
+fn threads_do_not_change_the_result() {
+    let a = shapes::icosphere(1.0, 5);
+    let b = moved(shapes::torus(1.0, 0.4, 90, 40), DVec3::new(0.5, 0.2, 0.1));
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let result = pool.install(|| run(&a, &b, Operation::Union)).unwrap();
+        (result.mesh, result.origins, result.seams)
+    };
+    let one = on(1);
+    assert_eq!(one, on(2));
+    assert_eq!(one, on(3));
+}
+
+/// Quarter turns are exact in doubles, so everything must come out the same, only turned.
+#[test]
+fn quarter_turns_commute() {
+    let a = shapes::cuboid(DVec3::new(2.0, 1.0, 1.0));
+    let b = moved(shapes::icosphere(0.7, 2), DVec3::new(0.6, 0.35, 0.2));
+    let turn = |m: &TriMesh| TriMesh {
+        positions: m.positions.iter().map(|p| DVec3::new(-p.y, p.x, p.z)).collect(),
+        faces: m.faces.clone(),
+    };
+    for operation in [Operation::Union, Operation::Difference, Operation::Intersection] {
+        let plain = run(&a, &b, operation).unwrap().mesh;
+        let turned = run(&turn(&a), &turn(&b), operation).unwrap().mesh;
+        assert_eq!(turn(&plain).positions, turned.positions);
+        assert!((volume(&plain) - volume(&turned)).abs() < 1e-15);
+    }
+}
+
+/// Sizes from 1e-300 to 1e300: a power of two changes nothing but the scale.
+#[test]
+fn any_scale() {
+    let a = shapes::icosphere(1.0, 1);
+    let b = moved(a.clone(), DVec3::new(0.5, 0.25, 0.125));
+    let plain = run(&a, &b, Operation::Union).unwrap().mesh;
+    for exponent in [-990, -500, -40, 60, 300, 900] {
+        let s = f64::from(exponent).exp2();
+        let scaled = |m: &TriMesh| TriMesh { positions: m.positions.iter().map(|p| s * *p).collect(), ..m.clone() };
+        let result = run(&scaled(&a), &scaled(&b), Operation::Union).unwrap().mesh;
+        assert_eq!(result, scaled(&plain), "{exponent}");
+    }
+}
+
+/// What cannot be done says where.
+#[test]
+fn refusals_have_a_place() {
+    let cube = shapes::cuboid(DVec3::ONE);
+    let mut open = cube.clone();
+    open.faces.pop();
+    assert!(matches!(run(&cube, &open, Operation::Union), Err(Error::Open { part: 1, .. })));
+    let mut inside_out = cube.clone();
+    inside_out.faces.iter_mut().for_each(|f| f.swap(1, 2));
+    assert!(matches!(run(&inside_out, &cube, Operation::Union), Err(Error::InsideOut { part: 0, .. })));
+    let mut nan = cube.clone();
+    nan.positions[3].y = f64::NAN;
+    assert!(matches!(run(&nan, &cube, Operation::Union), Err(Error::NotFinite { part: 0, .. })));
+    let watch = Watch::default();
+    watch.cancel();
+    let c = Connected::new(cube).unwrap();
+    assert!(matches!(boolean(&c, &c, Operation::Union, &Params::default(), &watch), Err(Error::Cancelled(_))));
 }
 
 proptest! {
