@@ -18,9 +18,8 @@ const EDGE: f64 = 0.03;
 
 /// Draws a mesh.
 ///
-/// Time is O(pixels · log faces), two to three seconds for 1024² pixels on two cores, most of it
-/// ambient occlusion; memory about 250 bytes per pixel and
-/// 300 per face.
+/// Time is O(pixels · log faces), two to three seconds for 1024² pixels on two cores, most of it for ambient
+/// occlusion; memory about 250 bytes per pixel and 300 per face.
 ///
 /// # Errors
 /// [`Error`] for an empty mesh, corners that are not points, a size or view out of range, colours that do not fit the
