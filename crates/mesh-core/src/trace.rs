@@ -13,6 +13,9 @@ use glam::DVec3;
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 
+/// A section this much longer than the straight line is taken without looking the other way.
+const NEARLY_STRAIGHT: f64 = 1.25;
+
 /// How far [`trace`] may go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TraceLimits {
@@ -114,15 +117,14 @@ pub fn trace<M: Adjacency + Positions>(
     let longest = from.faces(mesh).chain(to.faces(mesh)).map(|f| longest_edge(mesh, f)).fold(0.0, f64::max);
     let limit = limits.stretch * start.distance(goal) + limits.slack * longest;
     let across = (goal - start).cross(normal).normalize_or_zero();
-    // The surface at the start may look away from `normal`; the way that heads for the goal is tried first.
-    let mut walks = [across, -across].map(|across| PlaneWalk { mesh, start, goal, across, limit });
-    let heading = |walk: &PlaneWalk<M>| walk.first_exit(from).map_or(f64::NEG_INFINITY, |(heading, _)| heading);
-    if heading(&walks[1]) > heading(&walks[0]) {
-        walks.swap(0, 1);
-    }
-    walks
-        .iter()
-        .find_map(|walk| walk.run(from, to))
+    // The surface at the start may look away from `normal`: the section is then followed the wrong way round.
+    let walk = |across: DVec3, limit: f64| PlaneWalk { mesh, start, goal, across, limit }.run(from, to);
+    let there = walk(across, limit);
+    let detour = there.as_ref().map_or(limit, |(_, length)| *length);
+    let other = if detour > NEARLY_STRAIGHT * start.distance(goal) { walk(-across, detour) } else { None };
+    other
+        .or(there)
+        .map(|(path, _)| path)
         .or_else(|| straightest_in_strip(mesh, from, to, limit, limits.faces))
         .ok_or(TraceError::Lost { from: start, to: goal, limit })
 }
@@ -142,13 +144,14 @@ struct PlaneWalk<'a, M> {
 }
 
 impl<M: Adjacency + Positions> PlaneWalk<'_, M> {
-    fn run(&self, from: SurfacePoint, to: SurfacePoint) -> Option<Vec<SurfacePoint>> {
+    /// The path and its length.
+    fn run(&self, from: SurfacePoint, to: SurfacePoint) -> Option<(Vec<SurfacePoint>, f64)> {
         if self.across == DVec3::ZERO {
             return None;
         }
         let mut path = vec![];
         let (mut here, mut length) = (self.start, 0.0);
-        let (_, mut exit) = self.first_exit(from)?;
+        let mut exit = self.first_exit(from)?;
         loop {
             let crossing = self.crossing(exit);
             let place = crossing.position(self.mesh);
@@ -164,14 +167,14 @@ impl<M: Adjacency + Positions> PlaneWalk<'_, M> {
             if to.lies_in(self.mesh, entry.face()) {
                 // Snapped crossings may already be at the goal.
                 path.pop_if(|last| *last == to);
-                return Some(path);
+                return Some((path, length + here.distance(self.goal)));
             }
             exit = if self.is_exit(entry.next()) { entry.next() } else { entry.prev() };
         }
     }
 
-    /// Where the section leaves the faces around `from`, and how well that heads for the goal.
-    fn first_exit(&self, from: SurfacePoint) -> Option<(f64, HalfedgeId)> {
+    /// Where the section leaves the faces around `from`, towards the goal.
+    fn first_exit(&self, from: SurfacePoint) -> Option<HalfedgeId> {
         let towards = self.goal - self.start;
         let mut best = None;
         for f in from.faces(self.mesh) {
@@ -187,7 +190,7 @@ impl<M: Adjacency + Positions> PlaneWalk<'_, M> {
                 }
             }
         }
-        best
+        best.map(|(_, h)| h)
     }
 
     fn side(&self, v: crate::ids::VertexId) -> f64 {
