@@ -12,11 +12,11 @@ use crate::validate::validate;
 /// whose faces disagree or are more than two.
 ///
 /// Around an edge with several faces, those that bound one wedge of solid stay together, so that solids touching along
-/// an edge come apart whole. Faces that name a missing vertex or one vertex twice are dropped. The first part at a
-/// vertex keeps its id; copies follow the old vertices. Nearly O(n).
+/// an edge come apart whole. Faces that name a missing vertex or one vertex twice are dropped, and so are repetitions of
+/// a face in the same orientation. The first part at a vertex keeps its id; copies follow the old vertices.
+/// O(n log n).
 pub fn split(mesh: &TriMesh) -> (TriMesh, Origins) {
-    let usable = |f: &FaceId| in_range(mesh, mesh.corners(*f)) && distinct(mesh.corners(*f));
-    let kept: Vec<FaceId> = mesh.face_ids().filter(usable).collect();
+    let kept = kept_faces(mesh);
     let base = TriMesh { positions: mesh.positions.clone(), faces: kept.iter().map(|&f| mesh.corners(f)).collect() };
     let mut twins = wedge_twins(&base);
     let (out, sources) = loop {
@@ -45,6 +45,24 @@ pub fn split(mesh: &TriMesh) -> (TriMesh, Origins) {
     let vertices = sources.into_iter().map(|vertex| VertexOrigin::Input { part: 0, vertex }).collect::<Vec<_>>();
     let faces = kept.into_iter().map(|face| FaceOrigin::Input { part: 0, face }).collect::<Vec<_>>();
     (out, Origins { vertices: vertices.into(), faces: faces.into() })
+}
+
+/// The faces worth keeping, ascending.
+fn kept_faces(mesh: &TriMesh) -> Vec<FaceId> {
+    let cycle = |f: FaceId| {
+        let mut c = mesh.corners(f);
+        while c[0] != c[0].min(c[1]).min(c[2]) {
+            c.rotate_left(1);
+        }
+        (c, f)
+    };
+    let usable = |&f: &FaceId| in_range(mesh, mesh.corners(f)) && distinct(mesh.corners(f));
+    let mut cycles: Vec<_> = mesh.face_ids().filter(usable).map(cycle).collect();
+    cycles.sort_unstable();
+    cycles.dedup_by_key(|x| x.0);
+    let mut kept: Vec<FaceId> = cycles.into_iter().map(|x| x.1).collect();
+    kept.sort_unstable();
+    kept
 }
 
 /// Pairs halfedges: the two of a plain edge, and around other edges those that bound one wedge of solid.
@@ -159,7 +177,12 @@ mod tests {
             let soup = TriMesh::from_arrays((0..7).map(place).collect(), faces);
             let (out, origins) = split(&soup);
             prop_assert!(Connected::new(&out).is_ok());
-            let good: Vec<_> = soup.faces.iter().filter(|c| in_range(&soup, **c) && distinct(**c)).collect();
+            let turns = |c: [VertexId; 3]| [c, [c[1], c[2], c[0]], [c[2], c[0], c[1]]];
+            let repeats = |f: usize| soup.faces[..f].iter().any(|&c| turns(c).contains(&soup.faces[f]));
+            let good: Vec<_> = (0..soup.faces.len())
+                .filter(|&f| in_range(&soup, soup.faces[f]) && distinct(soup.faces[f]) && !repeats(f))
+                .map(|f| &soup.faces[f])
+                .collect();
             prop_assert_eq!(good.len(), out.faces.len());
             for (f, old) in good.into_iter().enumerate() {
                 let source = out.faces[f].map(|v| match origins.vertices[v] {
@@ -186,6 +209,10 @@ mod tests {
             assert_eq!(origins.faces.len(), 24);
             assert!((volume(&out) - 2.0).abs() < 1e-14);
         }
+        let ball = shapes::icosphere(1.0, 2);
+        let mut doubled = ball.clone();
+        doubled.faces.extend(ball.faces[30..90].iter().map(|&[a, b, c]| [b, c, a]));
+        assert_eq!(split(&doubled).0, ball);
         let clean = shapes::torus(2.0, 0.5, 8, 6);
         assert_eq!(split(&clean).0, clean);
     }
