@@ -54,7 +54,8 @@ pub enum Error {
     },
     /// A coordinate has no finite value in the format.
     #[error(
-        "vertex {vertex} at {place} cannot be written as {format}: {reason}; scale the model, or write obj, ply or off"
+        "vertex {vertex} at {:?}, {:?}, {:?} cannot be written as {format}: {reason}; scale the model, or write obj, ply or off",
+        place.x, place.y, place.z
     )]
     Unrepresentable {
         /// The vertex.

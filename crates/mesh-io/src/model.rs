@@ -183,6 +183,14 @@ impl Model {
         self.polygons = None;
     }
 
+    /// Drops faces that use a vertex twice and returns how many there were.
+    pub(crate) fn drop_degenerate_faces(&mut self) -> usize {
+        let before = self.mesh.faces.len();
+        let flat: Vec<bool> = self.mesh.faces.iter().map(|&[a, b, c]| a == b || b == c || c == a).collect();
+        self.retain_faces(|f| !flat[f.index()]);
+        before - self.mesh.faces.len()
+    }
+
     /// Whether every attribute has one value per element of the mesh and every id is in range.
     pub(crate) fn is_consistent(&self) -> bool {
         let (vertices, faces) = (self.mesh.vertex_count(), self.mesh.face_count());

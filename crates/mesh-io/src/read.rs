@@ -1,12 +1,12 @@
 //! From bytes to a model: picks the format's reader and puts names and places into its complaints.
 
-use crate::error::{Error, Fault};
+use crate::error::Error;
 use crate::folder::Folder;
 use crate::format::Format;
 use crate::model::Model;
 use crate::notes::Notes;
 use crate::text::normalized;
-use crate::{obj, off, ply, stl};
+use crate::{gltf, obj, off, ply, stl, threemf};
 use std::path::Path;
 
 /// Reads a mesh file; its extension tells the format. Side files are looked for in its folder and below, nowhere else.
@@ -63,7 +63,8 @@ fn decode(bytes: &[u8], format: Format, folder: &Folder, file: &str) -> Result<M
         Format::Off => off::read(bytes, &mut notes),
         Format::Ply => ply::read(bytes, folder, &mut notes),
         Format::Stl => stl::read(bytes, &mut notes),
-        Format::Glb | Format::Gltf | Format::ThreeMf => Err(Fault::whole("this format cannot be read yet")),
+        Format::Glb | Format::Gltf => gltf::read(bytes, folder, &mut notes),
+        Format::ThreeMf => threemf::read(bytes, &mut notes),
     };
     let mut model = result.map_err(|fault| fault.into_error(file.to_owned(), bytes))?;
     model.notes = notes.resolve(bytes);

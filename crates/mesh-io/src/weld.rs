@@ -29,7 +29,7 @@ pub struct Welded {
 /// ```
 pub fn weld_exact(model: &mut Model) -> Welded {
     let vertex_of = same_places(&model.mesh.positions);
-    apply(model, vertex_of)
+    apply(model, &vertex_of)
 }
 
 /// Merges each vertex into the first kept one within `tolerance` (model units) of it, in vertex order. Chains do not
@@ -40,7 +40,7 @@ pub fn weld_within(model: &mut Model, tolerance: f64) -> Welded {
         return weld_exact(model);
     }
     let vertex_of = near_places(&model.mesh.positions, tolerance);
-    apply(model, vertex_of)
+    apply(model, &vertex_of)
 }
 
 /// The first vertex at each vertex's place.
@@ -92,7 +92,7 @@ fn near_places(positions: &[DVec3], tolerance: f64) -> Vec<u32> {
 }
 
 /// Renumbers the kept vertices (those with `first[v] == v`) and the faces.
-fn apply(model: &mut Model, first: Vec<u32>) -> Welded {
+pub(crate) fn apply(model: &mut Model, first: &[u32]) -> Welded {
     let mut kept = 0u32;
     let mut vertex_of: Vec<VertexId> = Vec::with_capacity(first.len());
     for (v, &f) in first.iter().enumerate() {
@@ -116,10 +116,8 @@ fn apply(model: &mut Model, first: Vec<u32>) -> Welded {
             *v = vertex_of[v.index()];
         }
     }
-    let faces = model.mesh.faces.clone();
-    let flat = |[a, b, c]: [VertexId; 3]| a == b || b == c || c == a;
-    model.retain_faces(|f| !flat(faces[f.index()]));
-    Welded { vertex_of: vertex_of.into(), merged, dropped: faces.len() - model.mesh.faces.len() }
+    let dropped = model.drop_degenerate_faces();
+    Welded { vertex_of: vertex_of.into(), merged, dropped }
 }
 
 const NONE: u32 = u32::MAX;
@@ -162,7 +160,7 @@ impl Table {
 fn hash(key: [u64; 3]) -> u64 {
     // Multiply and fold high bits down, so that coordinates with few mantissa bits still spread over the low bits.
     let mix = |h: u64, x: u64| {
-        let product = u128::from(h ^ x) * 0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835;
+        let product = u128::from(h ^ x) * 0x9e37_79b9_7f4a_7c15;
         (product as u64) ^ ((product >> 64) as u64)
     };
     mix(mix(mix(0x243f_6a88_85a3_08d3, key[0]), key[1]), key[2])

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::format::Format;
 use crate::model::{Model, Note};
 use crate::weld::same_places;
-use crate::{obj, off, ply, stl};
+use crate::{gltf, obj, off, ply, stl, threemf};
 use mesh_core::{TriMesh, VertexId};
 use rayon::prelude::*;
 use std::fs;
@@ -110,7 +110,9 @@ fn encode(model: &Model, format: Format, target: Option<&Target>) -> Result<Enco
         Format::Off => off::encode(model),
         Format::Ply => ply::encode(model, target),
         Format::Stl => stl::encode(model),
-        Format::Glb | Format::Gltf | Format::ThreeMf => Encoded::default(),
+        Format::Glb => gltf::encode_glb(model),
+        Format::Gltf => gltf::encode_json(model, target),
+        Format::ThreeMf => threemf::encode(model),
     })
 }
 
