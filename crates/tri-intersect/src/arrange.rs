@@ -17,11 +17,15 @@ use std::cmp::Ordering;
 /// Pairs handed to one task.
 const BATCH: usize = 512;
 
+/// See [`Arrangement::grain`].
+const GRAIN: f64 = 5.7e-14; // 2^-44
+
 /// One of the two meshes, with points on which predicates are exact.
 pub(crate) struct Part<'a> {
     pub mesh: &'a Connected<TriMesh>,
     pub points: Cow<'a, [DVec3]>,
     scale: f64,
+    largest: f64,
 }
 
 impl Part<'_> {
@@ -45,7 +49,12 @@ pub(crate) fn parts<'a>(a: &'a Connected<TriMesh>, b: &'a Connected<TriMesh>) ->
         }
     }
     let size = sizes[0].max(sizes[1]);
-    Ok([a, b].map(|mesh| Part { mesh, points: scaled(&mesh.mesh().positions[..], size), scale: scale_for(size) }))
+    Ok([a, b].map(|mesh| Part {
+        mesh,
+        points: scaled(&mesh.mesh().positions[..], size),
+        scale: scale_for(size),
+        largest: size,
+    }))
 }
 
 /// The part of one mesh that carries a point, in the smallest dimension.
@@ -169,6 +178,9 @@ pub(crate) struct Arrangement {
     pub touches: Vec<([u32; 2], DVec3)>,
     /// Whether any two meet other than edge through face.
     pub degenerate: bool,
+    /// How far apart, in scaled units, points may be that count as one once rounding has confused them: some hundred
+    /// times the rounding of the largest coordinate. Nothing is moved farther.
+    pub grain: f64,
     /// What coordinates were multiplied with for the predicates.
     scale: f64,
 }
@@ -234,6 +246,7 @@ impl Arrangement {
                 .map(|c| Cell { faces: c.faces, corners: c.corners.iter().map(node).collect(), aligned: c.aligned })
                 .collect(),
             degenerate: !keys.iter().all(generic),
+            grain: GRAIN * parts[0].scale * parts[0].largest,
             scale: parts[0].scale,
             keys: fresh,
             places,

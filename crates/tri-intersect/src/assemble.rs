@@ -3,7 +3,7 @@
 use crate::arrange::{Arrangement, Part, Simplex};
 use crate::boolean::Operation;
 use crate::classify::CUT;
-use crate::cut::{Class, Merges, Pieces};
+use crate::cut::{Class, Pieces, Snaps};
 use mesh_core::{Adjacency, FaceId, FaceOrigin, Faces, HalfedgeId, Origins, TriMesh, VertexId, VertexOrigin};
 
 const NONE: u32 = u32::MAX;
@@ -70,7 +70,7 @@ pub(crate) fn keep(operation: Operation, which: usize, class: Class) -> Option<b
 pub(crate) fn assemble(
     parts: &[Part; 2],
     arrangement: &Arrangement,
-    merges: &Merges,
+    snaps: &Snaps,
     pieces: &[Pieces; 2],
     classes: &[Vec<u8>; 2],
     operation: Operation,
@@ -133,7 +133,7 @@ pub(crate) fn assemble(
             let (t, face) = (pieces[w].triangles[i], FaceId(pieces[w].parents[i]));
             faces.push(turned(t.map(|n| VertexId(vertices[n as usize])), flip));
             let part = w as u32;
-            let corners = parts[w].mesh.corners(face).map(|v| merges.find(node(w, v)));
+            let corners = parts[w].mesh.corners(face).map(|v| snaps.find(node(w, v)));
             let same = (0..3).any(|k| t == [corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]]);
             face_origins.push(if same { FaceOrigin::Input { part, face } } else { FaceOrigin::Piece { part, face } });
         }

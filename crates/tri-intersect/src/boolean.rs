@@ -3,6 +3,7 @@
 use crate::arrange::{self, Arrangement, Part};
 use crate::assemble::assemble;
 use crate::classify::{CUT, Flood, SeamTable};
+use crate::cut::Snaps;
 use crate::error::Error;
 use crate::{check, cut, pinch, seam};
 use glam::DVec3;
@@ -173,17 +174,18 @@ pub fn boolean(
     clock.lap("crossings");
     let arrangement = Arrangement::new(&parts, &crossings);
     clock.lap("arrangement");
-    let (mut pieces, merges) = cut::cut(&parts, &arrangement)?;
+    let mut snaps = Snaps::new(&arrangement);
+    let mut pieces = cut::cut(&parts, &arrangement, &mut snaps)?;
     watch.step("cut", 1.0)?;
     clock.lap("cut");
-    let seams = SeamTable::new(&arrangement, &merges);
-    let flood = |which| Flood { parts: &parts, arrangement: &arrangement, merges: &merges, seams: &seams, which };
+    let seams = SeamTable::new(&arrangement, &snaps);
+    let flood = |which| Flood { parts: &parts, arrangement: &arrangement, seams: &seams, which };
     let [pa, pb] = &mut pieces;
     let (ca, cb) = rayon::join(|| flood(0).run(pa, &trees[1]), || flood(1).run(pb, &trees[0]));
     let classes = [ca?, cb?];
     watch.step("classify", 1.0)?;
     clock.lap("classify");
-    let mut result = assemble(&parts, &arrangement, &merges, &pieces, &classes, operation);
+    let mut result = assemble(&parts, &arrangement, &snaps, &pieces, &classes, operation);
     if result.mesh.faces.is_empty() {
         return Err(Error::Empty(match operation {
             Operation::Difference => "part 1 covers part 0",
@@ -199,7 +201,7 @@ pub fn boolean(
         let mut suspect = vec![false; result.nodes.len()];
         for n in arrangement.segments.iter().flat_map(|s| s.ends).chain(first..first + arrangement.places.len() as u32)
         {
-            let v = result.vertices[merges.find(n) as usize];
+            let v = result.vertices[snaps.find(n) as usize];
             if v != u32::MAX {
                 suspect[v as usize] = true;
             }
@@ -235,8 +237,8 @@ pub fn boolean(
         let at = arrangement.position(&parts, cell.corners[0]);
         report.warnings.push(Warning::Coplanar { pairs: arrangement.cells.len(), at });
     }
-    if let Some(node) = merges.example {
-        report.warnings.push(Warning::Merged { points: merges.count, at: arrangement.position(&parts, node) });
+    if let Some(node) = snaps.example {
+        report.warnings.push(Warning::Merged { points: snaps.count, at: arrangement.position(&parts, node) });
     }
     Ok(Boolean { mesh: result.mesh, origins: result.origins, seams, report: clock.report })
 }

@@ -1,7 +1,7 @@
 //! Which side of the other solid every face is on: decided exactly along the seam, then flooded.
 
 use crate::arrange::{Arrangement, Part, Segment};
-use crate::cut::{Class, Merges, Pieces};
+use crate::cut::{Class, Pieces, Snaps};
 use crate::error::Error;
 use crate::inside::winding;
 use crate::predicate::side;
@@ -12,25 +12,30 @@ use rayon::prelude::*;
 
 /// The segments by their nodes, for look-up.
 pub(crate) struct SeamTable {
-    entries: Vec<([u32; 2], u32)>,
+    /// Edge (low, high), segment, and whether the segment runs from low to high.
+    entries: Vec<([u32; 2], u32, bool)>,
 }
 
 impl SeamTable {
-    pub(crate) fn new(arrangement: &Arrangement, merges: &Merges) -> Self {
-        let mut entries: Vec<([u32; 2], u32)> = arrangement
-            .segments
-            .par_iter()
-            .enumerate()
-            .filter_map(|(i, s)| {
-                let [p, q] = s.ends.map(|n| merges.find(n));
-                (p != q).then_some(([p.min(q), p.max(q)], i as u32))
-            })
-            .collect();
+    pub(crate) fn new(arrangement: &Arrangement, snaps: &Snaps) -> Self {
+        let mut entries: Vec<([u32; 2], u32, bool)> = Vec::with_capacity(arrangement.segments.len());
+        for (i, s) in arrangement.segments.iter().enumerate() {
+            let [p, q] = s.ends.map(|n| snaps.find(n));
+            let mut last = p;
+            let mut reach = |n: u32| {
+                if n != last {
+                    entries.push(([last.min(n), last.max(n)], i as u32, last < n));
+                    last = n;
+                }
+            };
+            snaps.between(p, q, 0, &mut reach);
+            reach(q);
+        }
         entries.par_sort_unstable();
         Self { entries }
     }
 
-    fn segments(&self, p: u32, q: u32) -> &[([u32; 2], u32)] {
+    fn segments(&self, p: u32, q: u32) -> &[([u32; 2], u32, bool)] {
         let key = [p.min(q), p.max(q)];
         let start = self.entries.partition_point(|e| e.0 < key);
         let end = start + self.entries[start..].iter().take_while(|e| e.0 == key).count();
@@ -42,7 +47,6 @@ impl SeamTable {
 pub(crate) struct Flood<'a> {
     pub parts: &'a [Part<'a>; 2],
     pub arrangement: &'a Arrangement,
-    pub merges: &'a Merges,
     pub seams: &'a SeamTable,
     pub which: usize,
 }
@@ -123,13 +127,13 @@ impl Flood<'_> {
     fn beside(&self, face: u32, u: u32, v: u32) -> Option<Class> {
         let (mine, theirs) = (self.which, 1 - self.which);
         let mut met: [Option<(u32, i8)>; 2] = [None; 2];
-        for &(_, s) in self.seams.segments(u, v) {
+        for &(_, s, rising) in self.seams.segments(u, v) {
             let s: &Segment<u32> = &self.arrangement.segments[s as usize];
             if s.faces[mine] != face {
                 continue;
             }
             // Left of na × nb, face a is behind b and face b before a.
-            let along = self.merges.find(s.ends[0]) == u;
+            let along = rising == (u < v);
             let left = if along == (mine == 0) { -1 } else { 1 };
             let slot = usize::from(met[0].is_some_and(|m| m.0 != s.faces[theirs]));
             met[slot] = Some((s.faces[theirs], if s.coplanar { 0 } else { left }));

@@ -18,10 +18,16 @@ struct Triangle {
     fixed: [bool; 3],
 }
 
-/// Two points (local indices) that rounding brought too close to tell apart; the triangulation is possible once they are
-/// one point. Equal when no such pair could be named.
+/// What rounding brought too close to tell apart, and how to make a triangulation possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct TooClose(pub u32, pub u32);
+pub(crate) enum Conflict {
+    /// Two points that should be one.
+    Merge(u32, u32),
+    /// A border edge or constraint that should go through a point.
+    Bend { edge: [u32; 2], via: u32 },
+    /// Points farther apart than rounding explains are in each other's way near this one.
+    Crossing(u32),
+}
 
 /// Reusable working memory.
 #[derive(Default)]
@@ -32,6 +38,8 @@ pub(crate) struct Triangulator {
     at: Vec<u32>,
     stack: Vec<(u32, u32)>,
     crossed: Vec<[u32; 2]>,
+    /// How far rounding may have moved a point.
+    grain: f64,
 }
 
 impl Triangulator {
@@ -43,8 +51,10 @@ impl Triangulator {
         sides: &[Vec<u32>; 3],
         inner: &[u32],
         constraints: &[[u32; 2]],
+        grain: f64,
         out: &mut Vec<[u32; 3]>,
-    ) -> Result<(), TooClose> {
+    ) -> Result<(), Conflict> {
+        self.grain = grain;
         self.xy.clear();
         self.xy.extend_from_slice(xy);
         self.triangles.clear();
@@ -67,7 +77,9 @@ impl Triangulator {
         self.relax_all();
         for t in &self.triangles {
             if self.turn(t.v[0], t.v[1], t.v[2]) <= 0 {
-                return Err(self.closest_pair(&t.v));
+                let sides = [0, 1, 2].map(|i| (t.fixed[i], ([t.v[i], t.v[(i + 1) % 3]], t.v[(i + 2) % 3])));
+                let fixed: Vec<_> = sides.iter().filter(|s| s.0).map(|s| s.1).collect();
+                return Err(if fixed.is_empty() { Conflict::Crossing(t.v[0]) } else { self.conflict(&fixed) });
             }
             out.push(t.v);
         }
@@ -78,22 +90,44 @@ impl Triangulator {
         turn2(self.xy[a as usize], self.xy[b as usize], self.xy[c as usize])
     }
 
-    fn distance2(&self, a: u32, b: u32) -> f64 {
+    fn distance(&self, a: u32, b: u32) -> f64 {
         let (p, q) = (self.xy[a as usize], self.xy[b as usize]);
-        (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)
+        (p[0] - q[0]).hypot(p[1] - q[1])
     }
 
-    fn closest_pair(&self, points: &[u32]) -> TooClose {
-        let mut best = (f64::INFINITY, TooClose(points[0], points[0]));
-        for (i, &a) in points.iter().enumerate() {
-            for &b in &points[..i] {
-                let d = self.distance2(a, b);
-                if a != b && d < best.0 {
-                    best = (d, TooClose(a.min(b), a.max(b)));
+    /// Distance of `v` from the segment between p and q, if its foot is within.
+    fn off_edge(&self, [p, q]: [u32; 2], v: u32) -> f64 {
+        let [p, q, v] = [p, q, v].map(|i| self.xy[i as usize]);
+        let (d, e) = ([q[0] - p[0], q[1] - p[1]], [v[0] - p[0], v[1] - p[1]]);
+        let length = d[0].hypot(d[1]);
+        let along = (d[0] * e[0] + d[1] * e[1]) / length;
+        if along < 0.0 || along > length { f64::INFINITY } else { (d[0] * e[1] - d[1] * e[0]).abs() / length }
+    }
+
+    /// The smallest change that lets points pass edges: each candidate is an edge and a point in its way.
+    fn conflict(&self, candidates: &[([u32; 2], u32)]) -> Conflict {
+        let mut best = (self.grain, Conflict::Crossing(candidates[0].1));
+        for &([p, q], v) in candidates {
+            for end in [p, q] {
+                if end != v && self.distance(end, v) < best.0 {
+                    best = (self.distance(end, v), Conflict::Merge(end.min(v), end.max(v)));
                 }
             }
         }
+        if let Conflict::Merge(..) = best.1 {
+            return best.1;
+        }
+        for &(edge, via) in candidates {
+            if self.off_edge(edge, via) < best.0 {
+                best = (self.off_edge(edge, via), Conflict::Bend { edge, via });
+            }
+        }
         best.1
+    }
+
+    /// Two edges that cross.
+    fn clash(&self, e: [u32; 2], f: [u32; 2]) -> Conflict {
+        self.conflict(&[(e, f[0]), (e, f[1]), (f, e[0]), (f, e[1])])
     }
 
     /// Sets a triangle and tells its neighbours and corners.
@@ -139,7 +173,7 @@ impl Triangulator {
     }
 
     /// Inserts an inner point, walking from a triangle; returns one at the point.
-    fn insert(&mut self, p: u32, from: u32) -> Result<u32, TooClose> {
+    fn insert(&mut self, p: u32, from: u32) -> Result<u32, Conflict> {
         let mut t = from;
         let mut steps = 0;
         loop {
@@ -150,7 +184,7 @@ impl Triangulator {
                 t = tri.next[i];
                 steps += 1;
                 if t == NONE || steps > 4 * self.triangles.len() + 16 {
-                    return Err(self.closest_pair(&[tri.v[i], tri.v[(i + 1) % 3], p]));
+                    return Err(self.conflict(&[([tri.v[i], tri.v[(i + 1) % 3]], p)]));
                 }
                 continue;
             }
@@ -159,9 +193,9 @@ impl Triangulator {
                 [true, false, false] => self.split_inner_edge(t, 0, p)?,
                 [false, true, false] => self.split_inner_edge(t, 1, p)?,
                 [false, false, true] => self.split_inner_edge(t, 2, p)?,
-                [true, _, true] => return Err(TooClose(tri.v[0].min(p), tri.v[0].max(p))),
-                [true, true, _] => return Err(TooClose(tri.v[1].min(p), tri.v[1].max(p))),
-                [_, true, true] => return Err(TooClose(tri.v[2].min(p), tri.v[2].max(p))),
+                [true, _, true] => return Err(Conflict::Merge(tri.v[0].min(p), tri.v[0].max(p))),
+                [true, true, _] => return Err(Conflict::Merge(tri.v[1].min(p), tri.v[1].max(p))),
+                [_, true, true] => return Err(Conflict::Merge(tri.v[2].min(p), tri.v[2].max(p))),
             }
             self.relax();
             return Ok(self.at[p as usize]);
@@ -180,16 +214,18 @@ impl Triangulator {
         self.stack.extend([(a, b), (b, c), (c, a)]);
     }
 
-    fn split_inner_edge(&mut self, t: u32, i: usize, p: u32) -> Result<(), TooClose> {
+    fn split_inner_edge(&mut self, t: u32, i: usize, p: u32) -> Result<(), Conflict> {
         let old = self.triangles[t as usize];
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         let (u, v, w) = (old.v[i], old.v[j], old.v[k]);
         let m = old.next[i];
         if m == NONE || old.fixed[i] {
-            return Err(self.closest_pair(&[u, v, p]));
+            return Err(self.conflict(&[([u, v], p)]));
         }
         let other = self.triangles[m as usize];
-        let Some(l) = (0..3).find(|&l| other.next[l] == t && other.v[l] == v) else { return Err(TooClose(p, p)) };
+        let Some(l) = (0..3).find(|&l| other.next[l] == t && other.v[l] == v) else {
+            return Err(Conflict::Crossing(p));
+        };
         let x = other.v[(l + 2) % 3];
         let (n1, n2) = (self.new_triangle(), self.new_triangle());
         let (o1, o2) = ((l + 1) % 3, (l + 2) % 3);
@@ -272,7 +308,7 @@ impl Triangulator {
     }
 
     /// Makes the edge between two points exist and fixes it, by flipping what crosses it [Sloan1993].
-    fn constrain(&mut self, [p, q]: [u32; 2]) -> Result<(), TooClose> {
+    fn constrain(&mut self, [p, q]: [u32; 2]) -> Result<(), Conflict> {
         if !self.fix(p, q) {
             self.collect_crossed(p, q)?;
             let mut crossed = std::mem::take(&mut self.crossed);
@@ -281,11 +317,11 @@ impl Triangulator {
                 let [u, v] = crossed[head];
                 head += 1;
                 if head > limit {
-                    return Err(self.closest_pair(&[p, q, u, v]));
+                    return Err(self.clash([p, q], [u, v]));
                 }
                 let Some((t, i)) = self.find(u, v) else { continue };
                 if self.triangles[t as usize].fixed[i] {
-                    return Err(self.closest_pair(&[p, q, u, v]));
+                    return Err(self.clash([p, q], [u, v]));
                 }
                 if self.quad(t, i).is_none() {
                     crossed.push([u, v]);
@@ -299,7 +335,7 @@ impl Triangulator {
             }
             self.crossed = crossed;
             if !self.fix(p, q) {
-                return Err(self.closest_pair(&[p, q]));
+                return Err(Conflict::Crossing(p));
             }
         }
         Ok(())
@@ -318,31 +354,31 @@ impl Triangulator {
     }
 
     /// The edges that the open segment from `p` to `q` crosses, in order.
-    fn collect_crossed(&mut self, p: u32, q: u32) -> Result<(), TooClose> {
+    fn collect_crossed(&mut self, p: u32, q: u32) -> Result<(), Conflict> {
         self.crossed.clear();
         let ahead = self.around(p, |tri, i| {
             let (r, l) = (tri.v[(i + 1) % 3], tri.v[(i + 2) % 3]);
             let (sr, sl) = (self.turn(p, q, r), self.turn(p, q, l));
             (sr <= 0 && sl >= 0 && self.turn(r, l, q) < 0 && (sr < 0 || sl > 0)).then_some((r, l))
         });
-        let Some((mut t, (mut r, mut l))) = ahead else { return Err(self.closest_pair(&[p, q])) };
+        let Some((mut t, (mut r, mut l))) = ahead else { return Err(Conflict::Crossing(p)) };
         loop {
             for v in [r, l] {
                 if self.turn(p, q, v) == 0 {
-                    return Err(self.closest_pair(&[p, q, v]));
+                    return Err(self.conflict(&[([p, q], v)]));
                 }
             }
             self.crossed.push([r, l]);
             let tri = &self.triangles[t as usize];
             let Some(i) = (0..3).find(|&i| tri.v[i] == r && tri.v[(i + 1) % 3] == l) else {
-                return Err(self.closest_pair(&[p, q, r, l]));
+                return Err(self.clash([p, q], [r, l]));
             };
             t = tri.next[i];
             if t == NONE || tri.fixed[i] {
-                return Err(self.closest_pair(&[p, q, r, l]));
+                return Err(self.clash([p, q], [r, l]));
             }
             let Some(&x) = self.triangles[t as usize].v.iter().find(|&&x| x != r && x != l) else {
-                return Err(self.closest_pair(&[p, q]));
+                return Err(Conflict::Crossing(p));
             };
             if x == q {
                 return Ok(());
@@ -423,7 +459,7 @@ mod tests {
             let constraints: Vec<[u32; 2]> = inner.windows(2).map(|w| [w[0], w[1]])
                 .filter(|c| turn2(xy[c[0] as usize], xy[c[1] as usize], [0.4, 0.35]) > 0).collect();
             let mut out = vec![];
-            let result = Triangulator::default().run(&xy, &sides, &inner, &constraints, &mut out);
+            let result = Triangulator::default().run(&xy, &sides, &inner, &constraints, 1e-15, &mut out);
             prop_assert!(result.is_ok(), "{result:?}");
             let border = 3 + sides.iter().map(Vec::len).sum::<usize>();
             prop_assert_eq!(out.len(), border - 2 + 2 * inner.len());
