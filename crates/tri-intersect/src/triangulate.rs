@@ -45,6 +45,7 @@ pub(crate) struct Triangulator {
 impl Triangulator {
     /// Triangulates the polygon of `sides`, each the local points strictly within a side of the triangle 0, 1, 2 in
     /// order, with `inner` points and `constraints`. `xy` must turn left at the corners. Each result turns left.
+    /// Points may have been moved by rounding, but by no more than `grain`.
     pub(crate) fn run(
         &mut self,
         xy: &[[f64; 2]],
@@ -55,6 +56,36 @@ impl Triangulator {
         out: &mut Vec<[u32; 3]>,
     ) -> Result<(), Conflict> {
         self.grain = grain;
+        self.attempt(xy, sides, inner, constraints, out).map_err(|conflict| match conflict {
+            Conflict::Crossing(_) => self.closest_pair().unwrap_or(conflict),
+            named => named,
+        })
+    }
+
+    /// The two closest points, if rounding may have confused them.
+    fn closest_pair(&self) -> Option<Conflict> {
+        let mut order: Vec<u32> = (0..self.xy.len() as u32).collect();
+        order.sort_by(|&a, &b| self.xy[a as usize][0].total_cmp(&self.xy[b as usize][0]));
+        let mut best = (self.grain, None);
+        for (i, &a) in order.iter().enumerate() {
+            let near = |b: &&u32| self.xy[**b as usize][0] - self.xy[a as usize][0] <= self.grain;
+            for &b in order[i + 1..].iter().take_while(near) {
+                if self.distance(a, b) < best.0 {
+                    best = (self.distance(a, b), Some(Conflict::Merge(a.min(b), a.max(b))));
+                }
+            }
+        }
+        best.1
+    }
+
+    fn attempt(
+        &mut self,
+        xy: &[[f64; 2]],
+        sides: &[Vec<u32>; 3],
+        inner: &[u32],
+        constraints: &[[u32; 2]],
+        out: &mut Vec<[u32; 3]>,
+    ) -> Result<(), Conflict> {
         self.xy.clear();
         self.xy.extend_from_slice(xy);
         self.triangles.clear();
