@@ -1,1 +1,223 @@
-//! Rolling-ball spine and linkage curves on triangle meshes
+//! Rolling-ball spine and linkage curves on triangle meshes.
+//!
+//! A ball kept in contact with the two sides of a blend curve traces a *spine curve* with its centre and a *linkage
+//! curve* on each side with its feet ([Liu2005] §3).
+//!
+//! ```
+//! use mesh_core::{Connected, VertexId, shapes};
+//! use spine::{BlendCurve, Params, roll};
+//! let cube = Connected::new(shapes::cuboid(glam::DVec3::ONE))?;
+//! let rim = BlendCurve::from_vertices(&cube, &[4, 5, 7, 6].map(VertexId))?;
+//! let rail = roll(&cube, &rim, std::slice::from_ref(&rim), &Params::new(0.1))?;
+//! assert!(rail.residual <= 1e-9 * 0.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | file | holds |
+//! |---|---|
+//! | `curve.rs` | blend curves: closed chains of edges, ridge or valley |
+//! | `radius.rs` | the ball's radius as a field in space |
+//! | `patch.rs` | the two sides of a curve, flooded to α·r |
+//! | `contact.rs` | one ball at rest against both, by Newton on closest points |
+//! | `march.rs` | the ball along the whole curve |
+//! | `fair.rs` | feet smoothed into fair linkages |
+
+mod contact;
+mod curve;
+mod fair;
+mod march;
+mod patch;
+mod radius;
+
+pub use contact::Contact;
+pub use curve::{BlendCurve, Convexity};
+pub use fair::{Sample, Softening};
+pub use patch::{Patch, Side};
+pub use radius::{Dip, RadiusField};
+
+use glam::DVec3;
+use mesh_core::{Adjacency, EdgeId, HalfedgeId, Positions, VertexId};
+use std::collections::HashSet;
+
+/// How the ball rolls.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Ball radius in model units, positive and finite, with its dips.
+    pub radius: RadiusField,
+    /// Least reach of the base patches, as a multiple of the radius. The paper uses 1.75; sharp wedges need more and
+    /// get it by themselves, so that a larger value costs time and gains nothing.
+    pub alpha: f64,
+    /// Largest step along the spine, in model units.
+    pub step: f64,
+    /// Standard deviation of the kernel that fairs the linkages, in model units. Half the input's edge length hides the
+    /// facets and no more; it is never taken beyond half the radius.
+    pub sigma: f64,
+    /// Where the linkages are smoothed more.
+    pub softenings: Vec<Softening>,
+}
+
+impl Params {
+    /// A constant radius, steps of r/5, fairing by r/4.
+    pub fn new(radius: f64) -> Self {
+        Self {
+            radius: RadiusField::constant(radius),
+            alpha: 1.75, // [Liu2005] §3
+            step: 0.2 * radius,
+            sigma: 0.25 * radius,
+            softenings: Vec::new(),
+        }
+    }
+}
+
+/// A ball's way along a closed blend curve.
+#[derive(Clone, Debug)]
+pub struct Rail {
+    /// Balls in order, the last next to the first, running the same way as the blend curve.
+    pub samples: Vec<Sample>,
+    /// Ridge or valley.
+    pub convexity: Convexity,
+    /// Largest | distance from a traced centre to a patch − radius |, in model units; at most 1e-9 of the radius.
+    pub residual: f64,
+    /// Reach of the base patches that was needed, as a multiple of the radius.
+    pub alpha: f64,
+    /// Faces of the left and the right base patch.
+    pub patch_faces: [usize; 2],
+}
+
+/// Why a ball could not be rolled. Every variant names a place in model units.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// Two consecutive vertices of a curve are not joined by an inner edge.
+    #[error("vertices {from} and {to} at {at} are not joined by an edge with two faces; a blend curve runs along mesh edges")]
+    NotAnEdge {
+        /// First vertex.
+        from: VertexId,
+        /// Second vertex.
+        to: VertexId,
+        /// Where the first vertex is.
+        at: DVec3,
+    },
+    /// The curve is partly a ridge and partly a valley.
+    #[error("the curve changes between ridge and valley near {at} ({:.0}% of its length differs); split it there", 100.0 * .share)]
+    MixedConvexity {
+        /// Where the first edge of the lesser kind is.
+        at: DVec3,
+        /// Share of the length that is of the lesser kind.
+        share: f64,
+    },
+    /// The radius is not a positive finite number.
+    #[error("a radius of {radius} is not a positive length")]
+    BadRadius {
+        /// The radius given.
+        radius: f64,
+    },
+    /// No ball can be seated anywhere on the curve.
+    #[error("a ball of radius {radius} touches both sides nowhere along the curve at {at}; try a smaller radius")]
+    NoStart {
+        /// A point of the curve.
+        at: DVec3,
+        /// The radius tried.
+        radius: f64,
+    },
+    /// The ball cannot go on.
+    #[error("the ball cannot roll on at {at} with radius {radius}; a smaller radius (or a dip there) may pass")]
+    Stuck {
+        /// The ball's centre.
+        at: DVec3,
+        /// Its radius there.
+        radius: f64,
+        /// The radius away from dips.
+        wanted: f64,
+    },
+    /// The spine does not close.
+    #[error("the spine has not come back after {travelled}, at {at}, on a curve of length {curve}; try a smaller radius")]
+    Astray {
+        /// Where the trace was given up.
+        at: DVec3,
+        /// How far it had gone.
+        travelled: f64,
+        /// Length of the blend curve.
+        curve: f64,
+    },
+    /// The patch has coordinates that boxes cannot hold.
+    #[error(transparent)]
+    Query(#[from] mesh_query::Error),
+}
+
+impl Error {
+    /// Where it happened, if it happened somewhere.
+    pub fn place(&self) -> Option<DVec3> {
+        match *self {
+            Self::NotAnEdge { at, .. }
+            | Self::MixedConvexity { at, .. }
+            | Self::NoStart { at, .. }
+            | Self::Stuck { at, .. }
+            | Self::Astray { at, .. } => Some(at),
+            Self::BadRadius { .. } | Self::Query(_) => None,
+        }
+    }
+}
+
+/// Rolls a ball along `curve`. `all_curves` are the curves being blended together: no patch floods across any of them.
+///
+/// Cost grows with the faces within reach and the samples along the curve, not with the mesh.
+///
+/// # Errors
+/// Every [`Error`]; those with a place may pass with a smaller radius there.
+pub fn roll<M: Adjacency + Positions + Sync>(
+    mesh: &M,
+    curve: &BlendCurve,
+    all_curves: &[BlendCurve],
+    params: &Params,
+) -> Result<Rail, Error> {
+    let radius = &params.radius;
+    if !(radius.base > 0.0 && radius.base.is_finite()) {
+        return Err(Error::BadRadius { radius: radius.base });
+    }
+    let convexity = curve.convexity(mesh)?;
+    let barriers: HashSet<EdgeId> = all_curves.iter().flat_map(|c| &c.halfedges).map(|&h| mesh.edge(h)).collect();
+    let mut alpha = params.alpha.max(wedge_alpha(mesh, curve));
+    loop {
+        let patch = |side| Patch::flood(mesh, curve, side, &barriers, alpha * radius.base, 0.5 * radius.base);
+        let patches = [patch(Side::Left)?, patch(Side::Right)?];
+        let contacts = march::trace(mesh, curve, convexity, &patches, radius, params.step)?.contacts;
+        let ran_off = contacts.iter().any(|c| (0..2).any(|s| on_rim(mesh, &patches[s], &barriers, &c.feet[s])));
+        if ran_off && alpha < MAX_ALPHA {
+            alpha *= 1.6;
+            continue;
+        }
+        let sigma = params.sigma.min(0.5 * radius.base);
+        let samples = fair::fair(mesh, &patches, &contacts, sigma, 1.5 * params.step, &params.softenings);
+        let residual = contacts.iter().map(|c| c.residual).fold(0.0, f64::max);
+        return Ok(Rail { samples, convexity, residual, alpha, patch_faces: patches.each_ref().map(|p| p.faces.len()) });
+    }
+}
+
+/// Beyond this reach the wedge is so sharp that a ball rolls half a dozen diameters away from the curve.
+const MAX_ALPHA: f64 = 16.0;
+
+/// A ball between planes that meet at normals φ apart touches them r·tan(φ/2) from the edge. The nineteenth
+/// twentieth of the edges sets the reach, the rest is left to the check that no foot ran off.
+fn wedge_alpha<M: Adjacency + Positions>(mesh: &M, curve: &BlendCurve) -> f64 {
+    let mut tangents: Vec<f64> = curve
+        .halfedges
+        .iter()
+        .filter_map(|&h| {
+            let cosine = curve::face_normal(mesh, h).dot(curve::face_normal(mesh, mesh.twin(h)?));
+            Some(((1.0 - cosine) / (1.0 + cosine).max(1e-3)).sqrt())
+        })
+        .collect();
+    tangents.sort_by(f64::total_cmp);
+    let typical = tangents.get(tangents.len() * 19 / 20).copied().unwrap_or(1.0);
+    (1.3 * typical + 0.75).min(MAX_ALPHA)
+}
+
+/// Whether a foot lies on an edge beyond which the patch was cut off.
+fn on_rim<M: Adjacency>(mesh: &M, patch: &Patch, barriers: &HashSet<EdgeId>, foot: &mesh_query::ClosestPoint) -> bool {
+    (0..3).any(|corner| {
+        let h = HalfedgeId::new(foot.face, corner);
+        foot.barycentric[(corner + 2) % 3] == 0.0
+            && !barriers.contains(&mesh.edge(h))
+            && mesh.twin(h).is_some_and(|t| patch.faces.binary_search(&t.face()).is_err())
+    })
+}

@@ -1,0 +1,86 @@
+//! Blend curves: closed chains of mesh edges with a left and a right side.
+
+use crate::Error;
+use glam::DVec3;
+use mesh_core::{Adjacency, Faces, HalfedgeId, Positions, VertexId};
+
+/// A closed chain of mesh edges along which a ball is to roll.
+///
+/// Walking along the halfedges with the surface normal up, their own faces lie on the left and their twins' faces on
+/// the right.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlendCurve {
+    /// The chain, head to tail; the last one's head is the first one's tail.
+    pub halfedges: Vec<HalfedgeId>,
+}
+
+/// Which side of the surface the ball rolls on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Convexity {
+    /// The faces form a ridge: the ball rolls inside the solid and takes material away.
+    Convex,
+    /// The faces form a valley: the ball rolls outside and adds material.
+    Concave,
+}
+
+impl BlendCurve {
+    /// The chain through a closed cycle of vertices, each joined to the next by an edge with two faces.
+    ///
+    /// # Errors
+    /// [`Error::NotAnEdge`] where two consecutive vertices are not so joined.
+    pub fn from_vertices<M: Adjacency + Positions>(mesh: &M, cycle: &[VertexId]) -> Result<Self, Error> {
+        let halfedges = (0..cycle.len())
+            .map(|i| {
+                let (a, b) = (cycle[i], cycle[(i + 1) % cycle.len()]);
+                mesh.ring(a)
+                    .find(|&h| mesh.head(h) == b && mesh.twin(h).is_some())
+                    .ok_or_else(|| Error::NotAnEdge { from: a, to: b, at: mesh.position(a) })
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self { halfedges })
+    }
+
+    /// The points of the chain, the first not repeated.
+    pub fn points<M: Faces + Positions>(&self, mesh: &M) -> Vec<DVec3> {
+        self.halfedges.iter().map(|&h| mesh.position(mesh.tail(h))).collect()
+    }
+
+    /// Length in model units.
+    pub fn length<M: Faces + Positions>(&self, mesh: &M) -> f64 {
+        self.halfedges.iter().map(|&h| mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h)))).sum()
+    }
+
+    /// Ridge or valley. The signs of the edges are weighed by their lengths, since the slivers of a boolean seam have
+    /// meaningless normals.
+    ///
+    /// # Errors
+    /// [`Error::MixedConvexity`] when more than a tenth of the length disagrees with the rest.
+    pub fn convexity<M: Adjacency + Positions>(&self, mesh: &M) -> Result<Convexity, Error> {
+        let (mut ridge, mut valley) = ((0.0, DVec3::ZERO), (0.0, DVec3::ZERO));
+        for &h in &self.halfedges {
+            let Some(t) = mesh.twin(h) else { continue };
+            let (a, b) = (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
+            let rise = (mesh.position(mesh.tail(h.prev())) - a).dot(face_normal(mesh, t));
+            let kind = if rise > 0.0 { &mut valley } else { &mut ridge };
+            if kind.0 == 0.0 {
+                kind.1 = a;
+            }
+            kind.0 += a.distance(b);
+        }
+        let (kind, minor, major) = if valley.0 >= ridge.0 {
+            (Convexity::Concave, ridge, valley)
+        } else {
+            (Convexity::Convex, valley, ridge)
+        };
+        if minor.0 > 0.1 * (minor.0 + major.0) {
+            return Err(Error::MixedConvexity { at: minor.1, share: minor.0 / (minor.0 + major.0) });
+        }
+        Ok(kind)
+    }
+}
+
+/// Unit normal of the face a halfedge bounds; zero when the face has no area.
+pub(crate) fn face_normal<M: Faces + Positions>(mesh: &M, h: HalfedgeId) -> DVec3 {
+    let [a, b, c] = mesh.corners(h.face()).map(|v| mesh.position(v));
+    (b - a).cross(c - a).normalize_or_zero()
+}

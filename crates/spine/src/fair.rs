@@ -1,0 +1,129 @@
+//! Fair linkages: feet smoothed along the rail and put back on their patches.
+//!
+//! On a faceted patch a ball's raw foot sticks at convex edges and jumps over concave ones by O(r·h/R), so that raw
+//! linkages are wavy and step back. Jumps are filled with samples, then every foot becomes a weighted mean of its
+//! neighbours and is projected to its patch again. Means of points in a plane stay in the plane, so that on planar
+//! patches only bends of the linkage are touched.
+
+use crate::contact::Contact;
+use crate::patch::Patch;
+use glam::DVec3;
+use mesh_core::{Adjacency, Positions};
+use mesh_query::ClosestPoint;
+use rayon::prelude::*;
+
+/// How much a stretch of the rail is smoothed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Softening {
+    /// Centre of the stretch.
+    pub at: DVec3,
+    /// Distance from the centre at which it ends, in model units.
+    pub extent: f64,
+    /// Factor on the width of the smoothing kernel there.
+    pub factor: f64,
+}
+
+/// One ball with its fair feet.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Ball centre.
+    pub center: DVec3,
+    /// Ball radius.
+    pub radius: f64,
+    /// Fair feet on the left and right patch.
+    pub feet: [ClosestPoint; 2],
+}
+
+/// Fills jumps, smooths, projects. `sigma` is the kernel's standard deviation in model units, `gap` the largest
+/// distance left between neighbouring feet before smoothing.
+pub(crate) fn fair<M: Adjacency + Positions + Sync>(
+    mesh: &M,
+    patches: &[Patch; 2],
+    contacts: &[Contact],
+    sigma: f64,
+    gap: f64,
+    softenings: &[Softening],
+) -> Vec<Sample> {
+    let raw = fill_jumps(mesh, patches, contacts, gap);
+    let (metric, total) = arc_lengths(&raw);
+    let points: [Vec<DVec3>; 2] = [0, 1].map(|side| raw.iter().map(|s| s.feet[side].point).collect());
+    (0..raw.len())
+        .into_par_iter()
+        .map(|i| {
+            let width = softenings.iter().fold(sigma, |w, s| {
+                let left = 1.0 - (raw[i].center.distance_squared(s.at) / (s.extent * s.extent)).min(1.0);
+                w * (1.0 + (s.factor - 1.0) * left)
+            });
+            let mut sample = raw[i];
+            for side in 0..2 {
+                let smooth = mean(&points[side], &metric, total, i, width);
+                if let Some(foot) = patches[side].closest(mesh, smooth) {
+                    sample.feet[side] = foot;
+                }
+            }
+            sample
+        })
+        .collect()
+}
+
+/// Where a foot jumps, lets it walk: extra samples with the centre and the other foot between those of the ends.
+fn fill_jumps<M: Adjacency + Positions>(mesh: &M, patches: &[Patch; 2], contacts: &[Contact], gap: f64) -> Vec<Sample> {
+    let mut filled = Vec::with_capacity(contacts.len());
+    for (i, here) in contacts.iter().enumerate() {
+        let next = &contacts[(i + 1) % contacts.len()];
+        filled.push(Sample { center: here.center, radius: here.radius, feet: here.feet });
+        let jump = (0..2).map(|s| here.feet[s].point.distance(next.feet[s].point)).fold(0.0, f64::max);
+        // A jump is never longer than two diameters, so the count is bounded.
+        let pieces = (jump / gap).ceil().clamp(1.0, 256.0) as u32;
+        for k in 1..pieces {
+            let t = f64::from(k) / f64::from(pieces);
+            let foot = |s: usize| patches[s].closest(mesh, here.feet[s].point.lerp(next.feet[s].point, t));
+            if let (Some(left), Some(right)) = (foot(0), foot(1)) {
+                let center = here.center.lerp(next.center, t);
+                filled.push(Sample { center, radius: here.radius + t * (next.radius - here.radius), feet: [left, right] });
+            }
+        }
+    }
+    filled
+}
+
+/// Arc length at each sample and in all, measured on whichever of centre and feet moves most.
+fn arc_lengths(samples: &[Sample]) -> (Vec<f64>, f64) {
+    let mut total = 0.0;
+    let starts = (0..samples.len())
+        .map(|i| {
+            let (a, b) = (&samples[i], &samples[(i + 1) % samples.len()]);
+            let start = total;
+            total += (0..2)
+                .map(|s| a.feet[s].point.distance(b.feet[s].point))
+                .fold(a.center.distance(b.center), f64::max);
+            start
+        })
+        .collect();
+    (starts, total)
+}
+
+/// Gaussian mean of `points` around `i`, each weighted by the stretch of curve it stands for.
+fn mean(points: &[DVec3], at: &[f64], total: f64, i: usize, sigma: f64) -> DVec3 {
+    let n = points.len();
+    let reach = (3.0 * sigma).min(0.4 * total);
+    let stretch = |j: usize| {
+        let (before, after) = (at[(j + n - 1) % n], at[(j + 1) % n]);
+        (after - before).rem_euclid(total).max(1e-6 * total / n as f64)
+    };
+    let (mut sum, mut weight) = (stretch(i) * points[i], stretch(i));
+    for direction in [1, n - 1] {
+        let mut j = i;
+        for _ in 1..n {
+            j = (j + direction) % n;
+            let d = if direction == 1 { at[j] - at[i] } else { at[i] - at[j] }.rem_euclid(total);
+            if d > reach {
+                break;
+            }
+            let w = stretch(j) * (-0.5 * (d / sigma) * (d / sigma)).exp();
+            sum += w * points[j];
+            weight += w;
+        }
+    }
+    sum / weight
+}

@@ -1,0 +1,145 @@
+//! The ball along the whole curve: the spine traced as the crossing of two offset surfaces.
+//!
+//! The spine is the set { distance to left = r, distance to right = r }. Following that set itself, instead of solving
+//! in the normal planes of the blend curve, needs no plane to be well placed: where a plane cuts the spine twice or
+//! not at all, the trace just goes on, and where the ball is blocked by a third contact it turns there, as a real
+//! ball does.
+
+use crate::contact::Contact;
+use crate::curve::{BlendCurve, Convexity, face_normal};
+use crate::patch::Patch;
+use crate::radius::RadiusField;
+use crate::Error;
+use glam::DVec3;
+use mesh_core::{Adjacency, Positions};
+
+/// Balls along a closed spine, in order, the last next to the first.
+#[derive(Clone, Debug)]
+pub(crate) struct Trace {
+    pub contacts: Vec<Contact>,
+}
+
+/// Rolls a ball along `curve` with steps of at most `step`.
+///
+/// # Errors
+/// [`Error::NoStart`] where no ball can be seated anywhere, [`Error::Stuck`] where the trace cannot go on,
+/// [`Error::Astray`] where it does not come back.
+pub(crate) fn trace<M: Adjacency + Positions>(
+    mesh: &M,
+    curve: &BlendCurve,
+    convexity: Convexity,
+    patches: &[Patch; 2],
+    radius: &RadiusField,
+    step: f64,
+) -> Result<Trace, Error> {
+    let (start, sign) = first_contact(mesh, curve, convexity, patches, radius)?;
+    let limit = 8.0 * curve.length(mesh) + 64.0 * radius.base;
+    let mut contacts = vec![start];
+    let (mut here, mut travelled, mut stride) = (start, 0.0, step);
+    while travelled < limit {
+        let direction = sign * here.tangent().ok_or(stuck(&here, radius))?;
+        let next = stride_from(mesh, patches, radius, &here, direction, sign, &mut stride).ok_or(stuck(&here, radius))?;
+        let chord = next.center - here.center;
+        if travelled > 2.0 * step && closes(&start, &here, chord, direction, step) {
+            if contacts.len() > 3 && next.center.distance(start.center) > 0.0 && here.center.distance(start.center) < 0.3 * step {
+                contacts.pop();
+            }
+            return Ok(Trace { contacts });
+        }
+        travelled += chord.length();
+        contacts.push(next);
+        here = next;
+        stride = (1.6 * stride).min(step);
+    }
+    Err(Error::Astray { at: here.center, travelled, curve: curve.length(mesh) })
+}
+
+fn stuck(here: &Contact, radius: &RadiusField) -> Error {
+    Error::Stuck { at: here.center, radius: here.radius, wanted: radius.base }
+}
+
+/// Whether the step from `here` along `chord` comes past the start.
+fn closes(start: &Contact, here: &Contact, chord: DVec3, direction: DVec3, step: f64) -> bool {
+    let to_start = start.center - here.center;
+    let along = to_start.dot(chord) / chord.length_squared();
+    (0.0..=1.0).contains(&along)
+        && (to_start - along * chord).length() < 0.5 * step
+        && start.tangent().zip(here.tangent()).is_some_and(|(s, h)| s.dot(h) > 0.0)
+        && to_start.dot(direction) > 0.0
+}
+
+/// One step, halved until the seated ball is ahead and near. Where the spine turns sharply because the ball meets a
+/// third contact, the tangent behind the corner serves in place of the one before it.
+fn stride_from<M: Adjacency + Positions>(
+    mesh: &M,
+    patches: &[Patch; 2],
+    radius: &RadiusField,
+    here: &Contact,
+    direction: DVec3,
+    sign: f64,
+    stride: &mut f64,
+) -> Option<Contact> {
+    let shortest = *stride / 64.0;
+    let mut turn = direction;
+    while *stride > shortest {
+        for ahead in [direction, turn] {
+            let Some(next) = Contact::seat(mesh, patches, radius, here.center + *stride * ahead) else { continue };
+            let chord = next.center - here.center;
+            let forward = chord.dot(ahead);
+            if forward > 0.3 * *stride && chord.length() < 1.8 * *stride && next.tangent().is_some() {
+                return Some(next);
+            }
+            // Not ahead: what lies there is another stretch of the spine, so try along its tangent.
+            if let Some(t) = next.tangent() {
+                turn = sign * t;
+            }
+        }
+        *stride *= 0.5;
+    }
+    None
+}
+
+/// Seats the first ball where the wedge is plainest, and tells whether left × right runs along the curve or against it.
+fn first_contact<M: Adjacency + Positions>(
+    mesh: &M,
+    curve: &BlendCurve,
+    convexity: Convexity,
+    patches: &[Patch; 2],
+    radius: &RadiusField,
+) -> Result<(Contact, f64), Error> {
+    let side = match convexity {
+        Convexity::Concave => 1.0,
+        Convexity::Convex => -1.0,
+    };
+    // Each edge proposes the centre that is exact between the planes of its two faces.
+    let mut guesses: Vec<(f64, DVec3, DVec3)> = Vec::new();
+    for &h in &curve.halfedges {
+        let Some(t) = mesh.twin(h) else { continue };
+        let (a, b) = (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
+        let (left, right) = (face_normal(mesh, h), face_normal(mesh, t));
+        let (middle, spread) = (0.5 * (a + b), 1.0 + left.dot(right));
+        if spread < 0.02 || left == DVec3::ZERO || right == DVec3::ZERO {
+            continue;
+        }
+        let r = radius.at(middle).0;
+        let center = middle + side * r * (left + right) / spread;
+        let miss = patches
+            .iter()
+            .map(|p| p.closest(mesh, center).map_or(f64::INFINITY, |c| (c.distance - r).abs() / r))
+            .fold(0.0, f64::max);
+        guesses.push((miss, center, (b - a).normalize_or_zero()));
+    }
+    guesses.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for &(_, center, along) in guesses.iter().take(48) {
+        let Some(contact) = Contact::seat(mesh, patches, radius, center) else { continue };
+        let Some(tangent) = contact.tangent() else { continue };
+        let slope = tangent.dot(along);
+        let near = contact.center.distance(center) < contact.radius;
+        let apart = contact.feet[0].point.distance(contact.feet[1].point) > 1e-3 * contact.radius;
+        if near && apart && slope.abs() > 0.5 {
+            return Ok((contact, slope.signum()));
+        }
+    }
+    let at = curve.halfedges.first().map_or(DVec3::ZERO, |&h| mesh.position(mesh.tail(h)));
+    Err(Error::NoStart { at, radius: radius.at(at).0 })
+}
