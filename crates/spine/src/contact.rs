@@ -66,6 +66,16 @@ impl Contact {
         (here.residual <= 1e-9 * here.radius).then_some(here)
     }
 
+    /// The nearest points to `center` as if a ball stood there; its residual tells how far it is from doing so.
+    pub(crate) fn probe<M: Adjacency + Positions>(
+        mesh: &M,
+        patches: &[Patch; 2],
+        radius: &RadiusField,
+        center: DVec3,
+    ) -> Option<Self> {
+        Self::at(mesh, patches, radius, center).map(|(contact, _)| contact)
+    }
+
     /// Unit directions from the feet to the centre.
     pub fn normals(&self) -> [DVec3; 2] {
         self.feet.map(|f| (self.center - f.point).normalize_or_zero())

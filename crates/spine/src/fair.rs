@@ -19,8 +19,8 @@ pub struct Softening {
     pub at: DVec3,
     /// Distance from the centre at which it ends, in model units.
     pub extent: f64,
-    /// Factor on the width of the smoothing kernel there.
-    pub factor: f64,
+    /// What is added to the kernel's standard deviation at its centre, in model units.
+    pub extra: f64,
 }
 
 /// One ball with its fair feet.
@@ -34,29 +34,34 @@ pub struct Sample {
     pub feet: [ClosestPoint; 2],
 }
 
-/// Fills jumps, smooths, projects. `sigma` is the kernel's standard deviation in model units, `gap` the largest
-/// distance left between neighbouring feet before smoothing.
+/// Fills jumps, smooths, projects. The kernel's standard deviation is `fairness` facet lengths on each side, at most
+/// half the radius; `gap` is the largest distance left between neighbouring feet before smoothing.
 pub(crate) fn fair<M: Adjacency + Positions + Sync>(
     mesh: &M,
     patches: &[Patch; 2],
     contacts: &[Contact],
-    sigma: f64,
+    fairness: f64,
     gap: f64,
     softenings: &[Softening],
 ) -> Vec<Sample> {
     let raw = fill_jumps(mesh, patches, contacts, gap);
     let (metric, total) = arc_lengths(&raw);
     let points: [Vec<DVec3>; 2] = [0, 1].map(|side| raw.iter().map(|s| s.feet[side].point).collect());
+    let sigmas = [0, 1].map(|side| fairness * facet_length(mesh, &raw, side));
     (0..raw.len())
         .into_par_iter()
         .map(|i| {
-            let width = softenings.iter().fold(sigma, |w, s| {
-                let left = 1.0 - (raw[i].center.distance_squared(s.at) / (s.extent * s.extent)).min(1.0);
-                w * (1.0 + (s.factor - 1.0) * left)
-            });
             let mut sample = raw[i];
+            let extra: f64 = softenings
+                .iter()
+                .map(|s| s.extra * (1.0 - raw[i].center.distance_squared(s.at) / (s.extent * s.extent)).max(0.0))
+                .sum();
             for side in 0..2 {
-                let smooth = mean(&points[side], &metric, total, i, width);
+                let sigma = sigmas[side].min(0.5 * sample.radius) + extra.min(sample.radius);
+                if sigma <= 0.0 {
+                    continue;
+                }
+                let smooth = mean(&points[side], &metric, total, i, sigma);
                 if let Some(foot) = patches[side].closest(mesh, smooth) {
                     sample.feet[side] = foot;
                 }
@@ -64,6 +69,25 @@ pub(crate) fn fair<M: Adjacency + Positions + Sync>(
             sample
         })
         .collect()
+}
+
+/// Mean length of the linkage between turns of the surface under it: the scale on which facets disturb the feet.
+///
+/// Turns under half a degree disturb nothing, and those over 30 degrees are creases, where feet belong on either side;
+/// zero where there are no others.
+fn facet_length<M: Adjacency + Positions>(mesh: &M, samples: &[Sample], side: usize) -> f64 {
+    let normal = |s: &Sample| {
+        let [a, b, c] = mesh.corners(s.feet[side].face).map(|v| mesh.position(v));
+        (b - a).cross(c - a).normalize_or_zero()
+    };
+    let (mut length, mut turns) = (0.0, 0u32);
+    for (i, here) in samples.iter().enumerate() {
+        let next = &samples[(i + 1) % samples.len()];
+        length += here.feet[side].point.distance(next.feet[side].point);
+        let turn = normal(here).angle_between(normal(next)).to_degrees();
+        turns += u32::from((0.5..30.0).contains(&turn));
+    }
+    if turns == 0 { 0.0 } else { length / f64::from(turns) }
 }
 
 /// Where a foot jumps, lets it walk: extra samples with the centre and the other foot between those of the ends.

@@ -49,21 +49,21 @@ pub struct Params {
     pub alpha: f64,
     /// Largest step along the spine, in model units.
     pub step: f64,
-    /// Standard deviation of the kernel that fairs the linkages, in model units. Half the input's edge length hides the
-    /// facets and no more; it is never taken beyond half the radius.
-    pub sigma: f64,
+    /// Standard deviation of the kernel that fairs each linkage, in mean lengths of the facets it crosses. It is never
+    /// taken beyond half the radius, and is zero on planes and across creases.
+    pub fairness: f64,
     /// Where the linkages are smoothed more.
     pub softenings: Vec<Softening>,
 }
 
 impl Params {
-    /// A constant radius, steps of r/5, fairing by r/4.
+    /// A constant radius, steps of r/5, fairing by 0.6 facets.
     pub fn new(radius: f64) -> Self {
         Self {
             radius: RadiusField::constant(radius),
             alpha: 1.75, // [Liu2005] §3
             step: 0.2 * radius,
-            sigma: 0.25 * radius,
+            fairness: 0.6,
             softenings: Vec::new(),
         }
     }
@@ -186,8 +186,7 @@ pub fn roll<M: Adjacency + Positions + Sync>(
             alpha *= 1.6;
             continue;
         }
-        let sigma = params.sigma.min(0.5 * radius.base);
-        let samples = fair::fair(mesh, &patches, &contacts, sigma, 1.5 * params.step, &params.softenings);
+        let samples = fair::fair(mesh, &patches, &contacts, params.fairness, 1.5 * params.step, &params.softenings);
         let residual = contacts.iter().map(|c| c.residual).fold(0.0, f64::max);
         return Ok(Rail { samples, convexity, residual, alpha, patch_faces: patches.each_ref().map(|p| p.faces.len()) });
     }

@@ -80,18 +80,16 @@ fn stride_from<M: Adjacency + Positions>(
     stride: &mut f64,
 ) -> Option<Contact> {
     let shortest = *stride / 64.0;
-    let mut turn = direction;
     while *stride > shortest {
-        for ahead in [direction, turn] {
-            let Some(next) = Contact::seat(mesh, patches, radius, here.center + *stride * ahead) else { continue };
+        let ahead = here.center + *stride * direction;
+        // Where a third contact blocks the way, the point ahead is already nearer to it: its tangent leads round the
+        // corner.
+        let turned = Contact::probe(mesh, patches, radius, ahead).and_then(|c| c.tangent()).map(|t| sign * t);
+        for heading in [Some(direction), turned].into_iter().flatten() {
+            let Some(next) = Contact::seat(mesh, patches, radius, here.center + *stride * heading) else { continue };
             let chord = next.center - here.center;
-            let forward = chord.dot(ahead);
-            if forward > 0.3 * *stride && chord.length() < 1.8 * *stride && next.tangent().is_some() {
+            if chord.dot(heading) > 0.3 * *stride && chord.length() < 1.8 * *stride && next.tangent().is_some() {
                 return Some(next);
-            }
-            // Not ahead: what lies there is another stretch of the spine, so try along its tangent.
-            if let Some(t) = next.tangent() {
-                turn = sign * t;
             }
         }
         *stride *= 0.5;

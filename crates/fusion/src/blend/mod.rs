@@ -1,0 +1,371 @@
+//! Rolling-ball blends of closed curves: swept strips sewn in between exactly cut linkages.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mod.rs` | the stages, and the loop that makes the ball smaller where it does not fit |
+//! | `linkage.rs` | linkage curves on the surface, cut into the mesh |
+//! | `strip.rs` | the swept surface as triangles |
+//! | `sew.rs` | removal of what lies between, sewing |
+//! | `trouble.rs` | what a stage refuses, and where |
+
+mod linkage;
+mod sew;
+mod strip;
+mod trouble;
+
+use glam::DVec3;
+use linkage::cut_linkages;
+use mesh_core::{Adjacency, Cancelled, Connected, FaceId, Faces, NotManifold, Origins, Positions, TriMesh, Watch};
+use profile_nurbs::Profile;
+use rayon::prelude::*;
+use sew::{between, sew};
+use spine::{BlendCurve, Dip, RadiusField, Rail, Softening, roll};
+use strip::{Fineness, sweep};
+use trouble::Trouble;
+
+/// How curves are blended.
+#[derive(Clone, Debug)]
+pub struct Params {
+    /// Ball radius, in model units. Positive and finite.
+    pub radius: f64,
+    /// Cross-section of the blend.
+    pub profile: Profile,
+    /// What to do where the ball does not fit.
+    pub overlap: Overlap,
+    /// Least reach of the base patches, as a multiple of the radius; see [`spine::Params::alpha`].
+    pub alpha: f64,
+    /// Largest sagitta of the blend's chords across, as a share of the radius.
+    pub tolerance: f64,
+}
+
+/// What to do where a ball of the full radius does not fit, or its sweep would fold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Overlap {
+    /// Refuse, naming the place and a radius that works.
+    Error,
+    /// Use a smaller ball there, fading into the full one, and say so.
+    #[default]
+    Shrink,
+}
+
+impl Params {
+    /// An arc of radius `radius`, made smaller where it does not fit.
+    pub fn new(radius: f64) -> Self {
+        Self { radius, profile: Profile::Arc, overlap: Overlap::default(), alpha: 1.75, tolerance: 0.005 }
+    }
+}
+
+/// A blended mesh and what is to be said of it.
+#[derive(Clone, Debug)]
+pub struct Blended {
+    /// The result; the blend's faces are the last ones.
+    pub mesh: TriMesh,
+    /// With respect to the input, as part 0.
+    pub origins: Origins,
+    /// First face of the blend.
+    pub first_blend_face: FaceId,
+    /// How many strips were swept; fewer than curves where neighbouring curves share one.
+    pub strips: usize,
+    /// Largest | distance of a ball's centre to a base patch − radius | over the radius.
+    pub residual: f64,
+    /// Where the ball was made smaller: place, and the radius there.
+    pub shrunk: Vec<(DVec3, f64)>,
+    /// Share of the spine's length on which the ball has its full radius.
+    pub full_share: f64,
+}
+
+/// Why a blend is impossible.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum Error {
+    /// There is nothing to blend.
+    #[error("no blend curve given; lower the dihedral angle, or name a curve")]
+    NoCurves,
+    /// The radius does not fit.
+    #[error(
+        "{what} at {at} with radius {radius}; {}",
+        .workable.map_or("no smaller radius tried worked either".to_string(), |r| format!("a radius of {r} works"))
+    )]
+    DoesNotFit {
+        /// What went wrong there.
+        what: &'static str,
+        /// Where, in model units.
+        at: DVec3,
+        /// The radius asked for.
+        radius: f64,
+        /// The largest of the smaller radii tried that works everywhere.
+        workable: Option<f64>,
+    },
+    /// The ball could not be rolled for a reason that no smaller radius mends.
+    #[error(transparent)]
+    Spine(#[from] spine::Error),
+    /// The linkages could not be cut into the mesh.
+    #[error(transparent)]
+    Embed(#[from] tri_intersect::EmbedError),
+    /// A stage made a mesh that is not a manifold; nothing is returned.
+    #[error("the blend failed its own check: {0}")]
+    Invalid(#[from] NotManifold),
+    /// See [`Watch`].
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Blends closed `curves` of `mesh`. Vertices outside the strips keep their bits and their order.
+///
+/// # Errors
+/// [`Error::DoesNotFit`] where the radius is the reason, with a place and a radius that works.
+pub fn blend(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &Params,
+    watch: &Watch,
+) -> Result<Blended, Error> {
+    let refusal = match attempt(mesh, curves, params, watch) {
+        Ok(blended) => return Ok(blended),
+        Err(refusal) => refusal,
+    };
+    match refusal {
+        Trouble::Cancelled(c) => Err(c.into()),
+        Trouble::Embed(e) => Err(e.into()),
+        Trouble::Spine(e) => Err(e.into()),
+        Trouble::Places { what, places } => {
+            let mut workable = None;
+            for halvings in 1..=6 {
+                let smaller = Params { radius: params.radius * 0.5f64.powi(halvings), ..params.clone() };
+                match attempt(mesh, curves, &smaller, watch) {
+                    Ok(_) => {
+                        workable = Some(smaller.radius);
+                        break;
+                    }
+                    Err(Trouble::Cancelled(c)) => return Err(c.into()),
+                    Err(_) => {}
+                }
+            }
+            let at = places.first().copied().unwrap_or(DVec3::ZERO);
+            Err(Error::DoesNotFit { what, at, radius: params.radius, workable })
+        }
+    }
+}
+
+/// How often places may be mended before the blend is given up.
+const ROUNDS: usize = 14;
+
+/// Rolls, cuts, sweeps, sews and checks; where a stage refuses, softens the linkages or shrinks the ball and begins
+/// again with the rails concerned.
+fn attempt(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params, watch: &Watch) -> Result<Blended, Trouble> {
+    let mut mends = Mends::new(params.radius);
+    let step = step_length(mesh, curves, params.radius);
+    let mut rails: Vec<Option<Rail>> = curves.iter().map(|_| None).collect();
+    for round in 0.. {
+        watch.step("blend", round as f64 / ROUNDS as f64)?;
+        let trouble = match roll_missing(mesh, curves, params, &mends, step, &mut rails)
+            .and_then(|()| assemble(mesh, curves, params, step, &rails, watch))
+        {
+            Ok(mut blended) => {
+                mends.account_for(&rails, &mut blended);
+                return Ok(blended);
+            }
+            Err(trouble) => trouble,
+        };
+        let Trouble::Places { what, ref places } = trouble else { return Err(trouble) };
+        if std::env::var_os("BLEND_TRACE").is_some() {
+            eprintln!("round {round}: {what}: {} places, first {:?}", places.len(), places.first());
+        }
+        if params.overlap == Overlap::Error && round >= 2 || round >= ROUNDS || !mends.add(places, params.overlap) {
+            return Err(trouble);
+        }
+        for rail in &mut rails {
+            if rail.as_ref().is_some_and(|r| mends.touches(r)) {
+                *rail = None;
+            }
+        }
+    }
+    Err(Trouble::at("the blend does not settle", vec![]))
+}
+
+/// Chord length along and across: matched to the input's edges, within a tenth and a quarter of the radius.
+fn step_length(mesh: &Connected<TriMesh>, curves: &[BlendCurve], radius: f64) -> f64 {
+    let mut edges: Vec<f64> = curves
+        .iter()
+        .flat_map(|c| &c.halfedges)
+        .flat_map(|&h| mesh.ring(mesh.tail(h)))
+        .map(|h| mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h))))
+        .collect();
+    edges.sort_by(f64::total_cmp);
+    edges.get(edges.len() * 3 / 4).map_or(0.2 * radius, |&e| (1.2 * e).clamp(0.1 * radius, 0.2 * radius))
+}
+
+fn roll_missing(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &Params,
+    mends: &Mends,
+    step: f64,
+    rails: &mut [Option<Rail>],
+) -> Result<(), Trouble> {
+    let spine_params = spine::Params {
+        radius: mends.radius.clone(),
+        alpha: params.alpha,
+        step,
+        softenings: mends.softenings.clone(),
+        ..spine::Params::new(params.radius)
+    };
+    let rolled: Vec<_> = rails
+        .par_iter()
+        .enumerate()
+        .map(|(i, rail)| rail.is_none().then(|| roll(mesh, &curves[i], curves, &spine_params)))
+        .collect();
+    let mut places = Vec::new();
+    for (rail, rolled) in rails.iter_mut().zip(rolled) {
+        match rolled {
+            None => {}
+            Some(Ok(r)) => *rail = Some(r),
+            Some(Err(e)) => match (&e, e.place()) {
+                (
+                    spine::Error::NoStart { .. } | spine::Error::Stuck { .. } | spine::Error::Astray { .. },
+                    Some(at),
+                ) => places.push(at),
+                _ => return Err(Trouble::Spine(e)),
+            },
+        }
+    }
+    if places.is_empty() { Ok(()) } else { Err(Trouble::at("the ball cannot roll on", places)) }
+}
+
+/// One pass of all later stages over finished rails.
+fn assemble(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &Params,
+    step: f64,
+    rails: &[Option<Rail>],
+    watch: &Watch,
+) -> Result<Blended, Trouble> {
+    let rails = distinct(rails, step);
+    let opened = cut_linkages(mesh, &rails, watch)?;
+    let cut = &opened.embedded.mesh;
+    let mut strips = Vec::with_capacity(rails.len());
+    let mut first_new = cut.vertex_count() as u32;
+    let fineness = Fineness { tolerance: params.tolerance, chord: step };
+    let mut folds = Vec::new();
+    for (rail, linkages) in rails.iter().zip(&opened.linkages) {
+        let strip = sweep(rail, linkages, &params.profile, fineness, first_new, |v| cut.position(v));
+        first_new += strip.points.len() as u32;
+        folds.extend_from_slice(&strip.folds);
+        strips.push(strip);
+    }
+    if !folds.is_empty() {
+        return Err(Trouble::at("the swept surface folds", folds));
+    }
+    let connected = Connected::new(cut).map_err(|e| Trouble::at("the cut mesh is not a manifold", e.place.into_iter().collect()))?;
+    let removed = between(mesh, &connected, &opened, curves)?;
+    let sewn = sew(&opened, &removed, &strips);
+    check(&sewn, watch)?;
+    let residual = rails.iter().map(|r| r.residual).fold(0.0, f64::max) / params.radius;
+    Ok(Blended {
+        mesh: sewn.mesh,
+        origins: sewn.origins,
+        first_blend_face: sewn.first_new_face,
+        strips: rails.len(),
+        residual,
+        shrunk: Vec::new(),
+        full_share: 1.0,
+    })
+}
+
+/// Rails without those that run along an earlier one: neighbouring curves whose balls roll the same way are swallowed
+/// by one strip.
+fn distinct(rails: &[Option<Rail>], step: f64) -> Vec<&Rail> {
+    let mut kept: Vec<&Rail> = Vec::new();
+    for rail in rails.iter().flatten() {
+        let start = rail.samples[0].center;
+        let near = |other: &&Rail| other.samples.iter().any(|s| s.center.distance(start) < 0.75 * step);
+        if !kept.iter().any(near) {
+            kept.push(rail);
+        }
+    }
+    kept
+}
+
+/// The result must be a manifold, and the blend must not meet itself or anything else.
+fn check(sewn: &sew::Sewn, watch: &Watch) -> Result<(), Trouble> {
+    if let Err(e) = Connected::new(&sewn.mesh) {
+        return Err(Trouble::at("the blend pinches", e.place.into_iter().collect()));
+    }
+    let new: Vec<FaceId> = (sewn.first_new_face.0..sewn.mesh.face_count() as u32).map(FaceId).collect();
+    let hits = tri_intersect::self_intersections_among(&sewn.mesh, &new, watch)
+        .map_err(|_| Trouble::at("the blend cannot be checked", vec![]))?;
+    if hits.is_empty() {
+        return Ok(());
+    }
+    let middle = |f: FaceId| sewn.mesh.triangle(f).iter().sum::<DVec3>() / 3.0;
+    let first_new = sewn.first_new_face;
+    let places = hits.iter().flatten().filter(|&&f| f >= first_new).map(|&f| middle(f)).collect();
+    Err(Trouble::at("the blend meets itself or the mesh", places))
+}
+
+/// What has been done so far to make the blend fit.
+struct Mends {
+    radius: RadiusField,
+    softenings: Vec<Softening>,
+    /// Places and how often each has been mended.
+    spots: Vec<(DVec3, u32)>,
+    /// Spots mended in this round.
+    fresh: Vec<usize>,
+}
+
+impl Mends {
+    fn new(radius: f64) -> Self {
+        Self { radius: RadiusField::constant(radius), softenings: Vec::new(), spots: Vec::new(), fresh: Vec::new() }
+    }
+
+    /// Mends each place: the first time by smoothing the linkages more, then by a smaller ball. False when a ball a
+    /// tenth of the size has not helped.
+    fn add(&mut self, places: &[DVec3], overlap: Overlap) -> bool {
+        self.fresh.clear();
+        let r = self.radius.base;
+        for &place in places {
+            let near = (0..self.spots.len()).find(|&i| self.spots[i].0.distance(place) < 2.0 * r);
+            let spot = near.unwrap_or_else(|| {
+                self.spots.push((place, 0));
+                self.spots.len() - 1
+            });
+            if !self.fresh.contains(&spot) {
+                self.fresh.push(spot);
+                self.spots[spot].1 += 1;
+            }
+        }
+        self.softenings.clear();
+        self.radius.dips.clear();
+        for &(at, count) in &self.spots {
+            let extent = r * (3.0 + 0.5 * f64::from(count));
+            self.softenings.push(Softening { at, extent, extra: 0.3 * r * f64::from(count.min(3)) });
+            if count > 1 && overlap == Overlap::Shrink {
+                self.radius.dips.push(Dip { at, factor: 0.7f64.powi(count as i32 - 1), extent });
+            }
+        }
+        self.spots.iter().all(|s| s.1 < 8)
+    }
+
+    fn touches(&self, rail: &Rail) -> bool {
+        self.fresh.iter().any(|&i| {
+            let (at, count) = self.spots[i];
+            let extent = self.radius.base * (3.0 + 0.5 * f64::from(count));
+            rail.samples.iter().any(|s| s.center.distance(at) < extent)
+        })
+    }
+
+    fn account_for(&self, rails: &[Option<Rail>], blended: &mut Blended) {
+        blended.shrunk = self.radius.dips.iter().map(|d| (d.at, self.radius.at(d.at).0)).collect();
+        let (mut full, mut total) = (0.0, 0.0);
+        for rail in rails.iter().flatten() {
+            for (i, s) in rail.samples.iter().enumerate() {
+                let length = s.center.distance(rail.samples[(i + 1) % rail.samples.len()].center);
+                total += length;
+                if s.radius >= 0.999 * self.radius.base {
+                    full += length;
+                }
+            }
+        }
+        blended.full_share = if total > 0.0 { full / total } else { 1.0 };
+    }
+}

@@ -1,0 +1,117 @@
+//! What lies between the linkages is removed and the strips are put in its place.
+
+use super::linkage::Opened;
+use super::strip::Strip;
+use super::trouble::Trouble;
+use glam::DVec3;
+use mesh_core::{
+    Adjacency, Connected, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId,
+    VertexOrigin,
+};
+use spine::BlendCurve;
+use tri_intersect::flood;
+
+/// The stage that new vertices and faces are marked with.
+pub(crate) const STAGE: &str = "blend";
+
+/// Finds the faces between the linkages of the cut mesh: all that is reached from the blend curves without crossing a
+/// linkage. Each linkage must come out with the removed side towards its rail and the kept side away from it.
+pub(crate) fn between(
+    mesh: &Connected<TriMesh>,
+    cut: &Connected<&TriMesh>,
+    opened: &Opened,
+    curves: &[BlendCurve],
+) -> Result<FaceMap<bool>, Trouble> {
+    let chains = || opened.linkages.iter().flatten().map(|l| l.chain());
+    let walls = chains().flat_map(|c| c.windows(2).map(|w| [w[0], w[1]]));
+    let mut seeds = Vec::new();
+    for curve in curves {
+        let seed = curve.halfedges.iter().find_map(|&h| halfedge(cut, mesh.tail(h), mesh.head(h)));
+        match seed {
+            Some(h) => seeds.push(h.face()),
+            None => {
+                let at = curve.halfedges.first().map_or(DVec3::ZERO, |&h| mesh.position(mesh.tail(h)));
+                return Err(Trouble::at("a linkage crosses the blend curve", vec![at]));
+            }
+        }
+    }
+    let removed = flood(cut, walls, &seeds);
+    let mut leaks = Vec::new();
+    for linkages in &opened.linkages {
+        for (side, linkage) in linkages.iter().enumerate() {
+            for w in linkage.chain().windows(2) {
+                // The left linkage has what stays on its left, the right one on its right.
+                let (stays, goes) = if side == 0 { ([w[0], w[1]], [w[1], w[0]]) } else { ([w[1], w[0]], [w[0], w[1]]) };
+                let gone = |[a, b]: [VertexId; 2]| halfedge(cut, a, b).map(|h| removed[h.face()]);
+                if gone(stays) != Some(false) || gone(goes) != Some(true) {
+                    leaks.push(cut.position(w[0]));
+                }
+            }
+        }
+    }
+    if leaks.is_empty() { Ok(removed) } else { Err(Trouble::at("the linkages do not enclose the blend curve", leaks)) }
+}
+
+fn halfedge<M: Adjacency>(mesh: &M, a: VertexId, b: VertexId) -> Option<HalfedgeId> {
+    mesh.ring(a).find(|&h| mesh.head(h) == b)
+}
+
+/// The sewn mesh.
+pub(crate) struct Sewn {
+    pub mesh: TriMesh,
+    /// With respect to the mesh that was blended, as part 0.
+    pub origins: Origins,
+    /// First face of the strips; they are the last ones.
+    pub first_new_face: FaceId,
+}
+
+/// Drops the removed faces and the vertices that only they used, keeps the order of all others, appends the strips.
+/// Strip vertex ids count from the cut mesh's vertex count, strip after strip.
+pub(crate) fn sew(opened: &Opened, removed: &FaceMap<bool>, strips: &[Strip]) -> Sewn {
+    let (cut, origins) = (&opened.embedded.mesh, &opened.embedded.origins);
+    let mut used = vec![true; cut.vertex_count()];
+    let gone = || cut.face_ids().filter(|&f| removed[f]);
+    for f in gone() {
+        for v in cut.corners(f) {
+            used[v.index()] = false;
+        }
+    }
+    for f in cut.face_ids().filter(|&f| !removed[f]) {
+        for v in cut.corners(f) {
+            used[v.index()] = true;
+        }
+    }
+    let mut new_id = vec![VertexId(u32::MAX); cut.vertex_count()];
+    let inner: usize = strips.iter().map(|s| s.points.len()).sum();
+    let mut positions = Vec::with_capacity(cut.vertex_count() + inner);
+    let mut vertex_origins = Vec::with_capacity(cut.vertex_count() + inner);
+    for v in cut.vertex_ids().filter(|v| used[v.index()]) {
+        new_id[v.index()] = VertexId::from(positions.len());
+        positions.push(cut.position(v));
+        vertex_origins.push(origins.vertices[v]);
+    }
+    let shift = positions.len() as u32;
+    let first_strip = cut.vertex_count() as u32;
+    for strip in strips {
+        positions.extend_from_slice(&strip.points);
+        vertex_origins.extend(std::iter::repeat_n(VertexOrigin::New { stage: STAGE }, strip.points.len()));
+    }
+    let renumber = |v: VertexId| {
+        if v.0 < first_strip { new_id[v.index()] } else { VertexId(v.0 - first_strip + shift) }
+    };
+    let (mut faces, mut face_origins) = (Vec::with_capacity(cut.face_count()), Vec::new());
+    for f in cut.face_ids().filter(|&f| !removed[f]) {
+        faces.push(cut.corners(f).map(renumber));
+        face_origins.push(origins.faces[f]);
+    }
+    let first_new_face = FaceId::from(faces.len());
+    for strip in strips {
+        faces.extend(strip.faces.iter().map(|&f| f.map(renumber)));
+        face_origins.extend(std::iter::repeat_n(FaceOrigin::New { stage: STAGE }, strip.faces.len()));
+    }
+    Sewn {
+        mesh: TriMesh { positions, faces },
+        origins: Origins { vertices: vertex_origins.into(), faces: face_origins.into() },
+        first_new_face,
+    }
+}

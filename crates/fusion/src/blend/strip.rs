@@ -1,0 +1,177 @@
+//! The swept surface as triangles: profiles across, cells between neighbouring profiles, sewn to the linkages' vertices.
+
+use super::linkage::Linkage;
+use glam::DVec3;
+use mesh_core::VertexId;
+use profile_nurbs::{Profile, Section};
+use spine::{Convexity, Rail, Sample};
+
+/// How finely the sweep is tessellated.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fineness {
+    /// Largest sagitta of a profile's chords, as a share of the ball's radius.
+    pub tolerance: f64,
+    /// Wanted chord length across, in model units.
+    pub chord: f64,
+}
+
+/// Triangles of one strip, and where they face the wrong way.
+pub(crate) struct Strip {
+    /// Corners; ids from `first_new` on are the strip's own vertices.
+    pub faces: Vec<[VertexId; 3]>,
+    /// The strip's own vertices in id order.
+    pub points: Vec<DVec3>,
+    /// Middles of the triangles that turn their backs to where the profile's front is: the sweep folds there.
+    pub folds: Vec<DVec3>,
+}
+
+/// One profile's vertices, from the left linkage to the right one.
+struct Column {
+    first_inner: u32,
+    inner: u32,
+}
+
+/// Sweeps `profile` along `rail`. `linkages` hold the vertices on either side, `position` places those vertices.
+pub(crate) fn sweep(
+    rail: &Rail,
+    linkages: &[Linkage; 2],
+    profile: &Profile,
+    fineness: Fineness,
+    first_new: u32,
+    position: impl Fn(VertexId) -> DVec3,
+) -> Strip {
+    let mut strip = Strip { faces: Vec::new(), points: Vec::new(), folds: Vec::new() };
+    let mut row = Vec::new();
+    let columns: Vec<Column> = rail
+        .samples
+        .iter()
+        .enumerate()
+        .map(|(i, sample)| {
+            let feet = [0, 1].map(|side| position(linkages[side].foot(i)));
+            profile_points(profile, sample, feet, fineness, &mut row);
+            let first_inner = first_new + strip.points.len() as u32;
+            let inner = row.len().saturating_sub(2);
+            strip.points.extend_from_slice(&row[1..=inner]);
+            Column { first_inner, inner: inner as u32 }
+        })
+        .collect();
+    let place = |points: &[DVec3], v: VertexId| {
+        if v.0 >= first_new { points[(v.0 - first_new) as usize] } else { position(v) }
+    };
+    let n = columns.len();
+    for i in 0..n {
+        let cell = Cell { columns: [&columns[i], &columns[(i + 1) % n]], spans: [0, 1].map(|s| linkages[s].span(i)) };
+        let before = strip.faces.len();
+        cell.triangulate(&strip.points, &place, &mut strip.faces);
+        let (here, next) = (&rail.samples[i], &rail.samples[(i + 1) % n]);
+        for face in &strip.faces[before..] {
+            let [a, b, c] = face.map(|v| place(&strip.points, v));
+            let middle = (a + b + c) / 3.0;
+            let front = match rail.convexity {
+                Convexity::Concave => here.center.midpoint(next.center) - middle,
+                Convexity::Convex => middle - here.center.midpoint(next.center),
+            };
+            if (b - a).cross(c - a).dot(front) <= 0.0 {
+                strip.folds.push(middle);
+            }
+        }
+    }
+    strip
+}
+
+/// Points of one profile, feet included.
+fn profile_points(profile: &Profile, ball: &Sample, feet: [DVec3; 2], fineness: Fineness, row: &mut Vec<DVec3>) {
+    row.clear();
+    let section = section(ball.center, feet);
+    let bend = (feet[0] - ball.center).angle_between(feet[1] - ball.center);
+    // Chords of an arc of angle δ stand off by r·(1 − cos(δ/2)).
+    let widest = 2.0 * (1.0 - fineness.tolerance.clamp(1e-9, 0.5)).acos();
+    let count = (bend / widest).ceil().max((bend * ball.radius / fineness.chord).round()).clamp(1.0, 4096.0);
+    profile.points(&section, count as usize, row);
+}
+
+/// The control triangle of the profile in the plane of ball centre and feet.
+///
+/// P0 is where the lines through the feet square to their radii meet; for fair feet, whose distances d1, d2 from the
+/// centre differ a little, that is centre + α·e1 + β·e2 with α = d̄/(1+c) + Δ/(1−c), β = d̄/(1+c) − Δ/(1−c). In shallow
+/// wedges the difference Δ would throw it beyond the feet; there it is held back, at the cost of a small kink at the
+/// linkage.
+fn section(center: DVec3, [p1, p2]: [DVec3; 2]) -> Section {
+    let (r1, r2) = (p1 - center, p2 - center);
+    let (d1, d2) = (r1.length(), r2.length());
+    let (e1, e2) = (r1 / d1, r2 / d2);
+    let c = e1.dot(e2);
+    let mean = 0.5 * (d1 + d2) / (1.0 + c).max(1e-9);
+    // At `mean` itself P0 would reach a foot, and beyond it the tangent length there would be negative.
+    let skew = (0.5 * (d1 - d2) / (1.0 - c).max(1e-300)).clamp(-0.5 * mean, 0.5 * mean);
+    Section { p1, p0: center + (mean + skew) * e1 + (mean - skew) * e2, p2 }
+}
+
+/// The quadrilateral between two neighbouring profiles.
+struct Cell<'a> {
+    columns: [&'a Column; 2],
+    /// Vertices of each linkage from this profile's foot to the next one's, both included.
+    spans: [&'a [VertexId]; 2],
+}
+
+impl Cell<'_> {
+    /// Vertex `k` of a column, counted from the left foot.
+    fn vertex(&self, column: usize, k: u32) -> VertexId {
+        let end = |side: usize| if column == 0 { self.spans[side][0] } else { self.spans[side][self.spans[side].len() - 1] };
+        match k {
+            0 => end(0),
+            k if k > self.columns[column].inner => end(1),
+            k => VertexId(self.columns[column].first_inner + k - 1),
+        }
+    }
+
+    /// Zips the two columns together by their parameters, the linkages' own vertices fanned in at both ends.
+    fn triangulate(
+        &self,
+        points: &[DVec3],
+        place: &impl Fn(&[DVec3], VertexId) -> DVec3,
+        faces: &mut Vec<[VertexId; 3]>,
+    ) {
+        let last = self.columns.map(|c| c.inner + 1);
+        let (mut i, mut j) = (0, 0);
+        while i < last[0] || j < last[1] {
+            let (l, r) = (self.vertex(0, i), self.vertex(1, j));
+            let take_left = j == last[1] || (i < last[0] && self.left_first(points, place, [i, j], last));
+            let apex = if take_left { self.vertex(0, i + 1) } else { self.vertex(1, j + 1) };
+            let first = i == 0 && j == 0;
+            if take_left {
+                i += 1;
+            } else {
+                j += 1;
+            }
+            if first {
+                for w in self.spans[0].windows(2) {
+                    faces.push([w[1], w[0], apex]);
+                }
+            } else if i == last[0] && j == last[1] {
+                let apex = if take_left { l } else { r };
+                for w in self.spans[1].windows(2) {
+                    faces.push([apex, w[0], w[1]]);
+                }
+            } else {
+                faces.push([r, l, apex]);
+            }
+        }
+    }
+
+    /// Which column to climb: the one that lags behind, or on a tie the one with the shorter diagonal.
+    fn left_first(
+        &self,
+        points: &[DVec3],
+        place: &impl Fn(&[DVec3], VertexId) -> DVec3,
+        [i, j]: [u32; 2],
+        last: [u32; 2],
+    ) -> bool {
+        let (left, right) = ((i + 1) * last[1], (j + 1) * last[0]);
+        if left != right {
+            return left < right;
+        }
+        let p = |column, k| place(points, self.vertex(column, k));
+        p(0, i + 1).distance_squared(p(1, j)) <= p(1, j + 1).distance_squared(p(0, i))
+    }
+}

@@ -1,0 +1,35 @@
+//! What goes wrong while a blend is made, and where: the places at which the ball is then made smaller.
+
+use glam::DVec3;
+use mesh_core::Cancelled;
+use tri_intersect::EmbedError;
+
+/// A stage's refusal.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Trouble {
+    /// Places where a smoother linkage or a smaller ball may help.
+    Places {
+        /// What happened there.
+        what: &'static str,
+        /// Where, in model units.
+        places: Vec<DVec3>,
+    },
+    /// The curves could not be embedded for another reason.
+    Embed(EmbedError),
+    /// The rolling itself failed for a reason without a place.
+    Spine(spine::Error),
+    /// The caller asked to stop.
+    Cancelled(Cancelled),
+}
+
+impl Trouble {
+    pub fn at(what: &'static str, places: Vec<DVec3>) -> Self {
+        Self::Places { what, places }
+    }
+}
+
+impl From<Cancelled> for Trouble {
+    fn from(c: Cancelled) -> Self {
+        Self::Cancelled(c)
+    }
+}
