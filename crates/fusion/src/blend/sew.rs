@@ -9,7 +9,7 @@ use mesh_core::{
     VertexOrigin,
 };
 use spine::BlendCurve;
-use tri_intersect::flood;
+use tri_intersect::embed::flood;
 
 /// The stage that new vertices and faces are marked with.
 pub(crate) const STAGE: &str = "blend";
