@@ -44,9 +44,12 @@ pub(crate) fn fair<M: Adjacency + Positions + Sync>(
     gap: f64,
     softenings: &[Softening],
 ) -> Vec<Sample> {
-    let raw = fill_jumps(mesh, patches, contacts, gap);
+    let raw: Vec<Sample> =
+        contacts.iter().map(|c| Sample { center: c.center, radius: c.radius, feet: c.feet }).collect();
+    let raw = fill_jumps(mesh, patches, &raw, gap);
     let (metric, total) = arc_lengths(&raw);
     let points: [Vec<DVec3>; 2] = [0, 1].map(|side| raw.iter().map(|s| s.feet[side].point).collect());
+    let centers: Vec<DVec3> = raw.iter().map(|s| s.center).collect();
     let sigmas = [0, 1].map(|side| fairness * facet_length(mesh, &raw, side));
     (0..raw.len())
         .into_par_iter()
@@ -56,6 +59,9 @@ pub(crate) fn fair<M: Adjacency + Positions + Sync>(
                 .iter()
                 .map(|s| s.extra * (1.0 - raw[i].center.distance_squared(s.at) / (s.extent * s.extent)).max(0.0))
                 .sum();
+            if extra > 0.0 {
+                sample.center = mean(&centers, &metric, total, i, extra.min(sample.radius));
+            }
             for side in 0..2 {
                 let sigma = sigmas[side].min(0.5 * sample.radius) + extra.min(sample.radius);
                 if sigma <= 0.0 {
@@ -90,14 +96,21 @@ fn facet_length<M: Adjacency + Positions>(mesh: &M, samples: &[Sample], side: us
     if turns == 0 { 0.0 } else { length / f64::from(turns) }
 }
 
-/// Where a foot jumps, lets it walk: extra samples with the centre and the other foot between those of the ends.
-fn fill_jumps<M: Adjacency + Positions>(mesh: &M, patches: &[Patch; 2], contacts: &[Contact], gap: f64) -> Vec<Sample> {
-    let mut filled = Vec::with_capacity(contacts.len());
-    for (i, here) in contacts.iter().enumerate() {
-        let next = &contacts[(i + 1) % contacts.len()];
-        filled.push(Sample { center: here.center, radius: here.radius, feet: here.feet });
-        let jump = (0..2).map(|s| here.feet[s].point.distance(next.feet[s].point)).fold(0.0, f64::max);
-        // A jump is never longer than two diameters, so the count is bounded.
+/// Where a foot jumps or a sample is missing, lets the feet walk: extra samples between those of the ends.
+pub(crate) fn fill_jumps<M: Adjacency + Positions>(
+    mesh: &M,
+    patches: &[Patch; 2],
+    samples: &[Sample],
+    gap: f64,
+) -> Vec<Sample> {
+    let mut filled = Vec::with_capacity(samples.len());
+    for (i, here) in samples.iter().enumerate() {
+        let next = &samples[(i + 1) % samples.len()];
+        filled.push(*here);
+        let jump = (0..2)
+            .map(|s| here.feet[s].point.distance(next.feet[s].point))
+            .fold(here.center.distance(next.center), f64::max);
+        // A jump is never longer than a few diameters, so the count is bounded.
         let pieces = (jump / gap).ceil().clamp(1.0, 256.0) as u32;
         for k in 1..pieces {
             let t = f64::from(k) / f64::from(pieces);

@@ -21,6 +21,7 @@
 //! | `contact.rs` | one ball at rest against both, by Newton on closest points |
 //! | `march.rs` | the ball along the whole curve |
 //! | `fair.rs` | feet smoothed into fair linkages |
+//! | `regress.rs` | folds of the sweep cut out and bridged |
 
 mod contact;
 mod curve;
@@ -28,6 +29,7 @@ mod fair;
 mod march;
 mod patch;
 mod radius;
+mod regress;
 
 pub use contact::Contact;
 pub use curve::{BlendCurve, Convexity};
@@ -180,13 +182,19 @@ pub fn roll<M: Adjacency + Positions + Sync>(
     loop {
         let patch = |side| Patch::flood(mesh, curve, side, &barriers, alpha * radius.base, 0.5 * radius.base);
         let patches = [patch(Side::Left)?, patch(Side::Right)?];
-        let contacts = march::trace(mesh, curve, convexity, &patches, radius, params.step)?.contacts;
-        let ran_off = contacts.iter().any(|c| (0..2).any(|s| on_rim(mesh, &patches[s], &barriers, &c.feet[s])));
-        if ran_off && alpha < MAX_ALPHA {
-            alpha *= 1.6;
-            continue;
-        }
-        let samples = fair::fair(mesh, &patches, &contacts, params.fairness, 1.5 * params.step, &params.softenings);
+        let wide = alpha >= MAX_ALPHA;
+        let off = |c: &Contact| !wide && (0..2).any(|s| on_rim(mesh, &patches[s], &barriers, &c.feet[s]));
+        let contacts = match march::trace(mesh, curve, convexity, &patches, radius, params.step, off)? {
+            march::Trace::Closed(contacts) => contacts,
+            march::Trace::RanOff => {
+                alpha *= 1.6;
+                continue;
+            }
+        };
+        let gap = 1.5 * params.step;
+        let samples = fair::fair(mesh, &patches, &contacts, params.fairness, gap, &params.softenings);
+        let samples = regress::regress(&samples, convexity, 3.0 * radius.base);
+        let samples = fair::fill_jumps(mesh, &patches, &samples, gap);
         let residual = contacts.iter().map(|c| c.residual).fold(0.0, f64::max);
         return Ok(Rail { samples, convexity, residual, alpha, patch_faces: patches.each_ref().map(|p| p.faces.len()) });
     }

@@ -13,13 +13,16 @@ use crate::Error;
 use glam::DVec3;
 use mesh_core::{Adjacency, Positions};
 
-/// Balls along a closed spine, in order, the last next to the first.
-#[derive(Clone, Debug)]
-pub(crate) struct Trace {
-    pub contacts: Vec<Contact>,
+/// How a trace ended well.
+pub(crate) enum Trace {
+    /// Balls along the closed spine, in order, the last next to the first.
+    Closed(Vec<Contact>),
+    /// A foot came to where a patch was cut off: it is to be flooded farther.
+    RanOff,
 }
 
-/// Rolls a ball along `curve` with steps of at most `step`.
+/// Rolls a ball along `curve` with steps of at most `step`. `on_rim` tells whether a ball touches where a patch was cut
+/// off.
 ///
 /// # Errors
 /// [`Error::NoStart`] where no ball can be seated anywhere, [`Error::Stuck`] where the trace cannot go on,
@@ -31,6 +34,7 @@ pub(crate) fn trace<M: Adjacency + Positions>(
     patches: &[Patch; 2],
     radius: &RadiusField,
     step: f64,
+    on_rim: impl Fn(&Contact) -> bool,
 ) -> Result<Trace, Error> {
     let (start, sign) = first_contact(mesh, curve, convexity, patches, radius)?;
     let limit = 8.0 * curve.length(mesh) + 64.0 * radius.base;
@@ -39,12 +43,15 @@ pub(crate) fn trace<M: Adjacency + Positions>(
     while travelled < limit {
         let direction = sign * here.tangent().ok_or(stuck(&here, radius))?;
         let next = stride_from(mesh, patches, radius, &here, direction, sign, &mut stride).ok_or(stuck(&here, radius))?;
+        if on_rim(&next) {
+            return Ok(Trace::RanOff);
+        }
         let chord = next.center - here.center;
         if travelled > 2.0 * step && closes(&start, &here, chord, direction, step) {
             if contacts.len() > 3 && next.center.distance(start.center) > 0.0 && here.center.distance(start.center) < 0.3 * step {
                 contacts.pop();
             }
-            return Ok(Trace { contacts });
+            return Ok(Trace::Closed(contacts));
         }
         travelled += chord.length();
         contacts.push(next);
