@@ -39,6 +39,7 @@ pub use radius::{Dip, RadiusField};
 
 use glam::DVec3;
 use mesh_core::{Adjacency, EdgeId, HalfedgeId, Positions, VertexId};
+use march::Footing;
 use std::collections::HashSet;
 
 /// How the ball rolls.
@@ -182,9 +183,17 @@ pub fn roll<M: Adjacency + Positions + Sync>(
     loop {
         let patch = |side| Patch::flood(mesh, curve, side, &barriers, alpha * radius.base, 0.5 * radius.base);
         let patches = [patch(Side::Left)?, patch(Side::Right)?];
-        let wide = alpha >= MAX_ALPHA;
-        let off = |c: &Contact| !wide && (0..2).any(|s| on_rim(mesh, &patches[s], &barriers, &c.feet[s]));
-        let contacts = match march::trace(mesh, curve, convexity, &patches, radius, params.step, off)? {
+        let footing = |c: &Contact| {
+            let at_rim = |s: usize| on_rim(mesh, &patches[s], &barriers, &c.feet[s]);
+            if (0..2).any(|s| tips(mesh, &barriers, convexity, c, s)) {
+                Footing::Tipping
+            } else if alpha < MAX_ALPHA && (0..2).any(at_rim) {
+                Footing::AtRim
+            } else {
+                Footing::Firm
+            }
+        };
+        let contacts = match march::trace(mesh, curve, convexity, &patches, radius, params.step, footing)? {
             march::Trace::Closed(contacts) => contacts,
             march::Trace::RanOff => {
                 alpha *= 1.6;
@@ -228,3 +237,23 @@ fn on_rim<M: Adjacency>(mesh: &M, patch: &Patch, barriers: &HashSet<EdgeId>, foo
             && mesh.twin(h).is_some_and(|t| patch.faces.binary_search(&t.face()).is_err())
     })
 }
+
+/// Whether a foot lies on a blend curve while the ball has left the side its patch faces.
+fn tips<M: Adjacency + Positions>(
+    mesh: &M,
+    barriers: &HashSet<EdgeId>,
+    convexity: Convexity,
+    ball: &Contact,
+    side: usize,
+) -> bool {
+    let foot = &ball.feet[side];
+    let on_curve = (0..3).any(|corner| {
+        foot.barycentric[(corner + 2) % 3] == 0.0 && barriers.contains(&mesh.edge(HalfedgeId::new(foot.face, corner)))
+    });
+    let facing = curve::face_normal(mesh, HalfedgeId::new(foot.face, 0)).dot(ball.normals()[side]);
+    on_curve && TIPPING > if convexity == Convexity::Concave { facing } else { -facing }
+}
+
+/// Cosine of the angle between a patch's normal and the ball at which a ball that touches only the patch's edge is
+/// taken to be leaving it: 60 degrees.
+const TIPPING: f64 = 0.5;

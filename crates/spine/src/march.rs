@@ -21,8 +21,19 @@ pub(crate) enum Trace {
     RanOff,
 }
 
-/// Rolls a ball along `curve` with steps of at most `step`. `on_rim` tells whether a ball touches where a patch was cut
-/// off.
+/// How a ball's feet stand on their patches.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Footing {
+    /// On both patches.
+    Firm,
+    /// At the edge where a patch was cut off.
+    AtRim,
+    /// At a blend curve with the ball already beyond the side of its patch: rolling on would take it round the curve
+    /// into the solid.
+    Tipping,
+}
+
+/// Rolls a ball along `curve` with steps of at most `step`, looking at every ball's `footing`.
 ///
 /// # Errors
 /// [`Error::NoStart`] where no ball can be seated anywhere, [`Error::Stuck`] where the trace cannot go on,
@@ -34,7 +45,7 @@ pub(crate) fn trace<M: Adjacency + Positions>(
     patches: &[Patch; 2],
     radius: &RadiusField,
     step: f64,
-    on_rim: impl Fn(&Contact) -> bool,
+    footing: impl Fn(&Contact) -> Footing,
 ) -> Result<Trace, Error> {
     let (start, sign) = first_contact(mesh, curve, convexity, patches, radius)?;
     let limit = 8.0 * curve.length(mesh) + 64.0 * radius.base;
@@ -42,9 +53,11 @@ pub(crate) fn trace<M: Adjacency + Positions>(
     let (mut here, mut travelled, mut stride) = (start, 0.0, step);
     while travelled < limit {
         let direction = sign * here.tangent().ok_or(stuck(&here, radius))?;
-        let next = stride_from(mesh, patches, radius, &here, direction, sign, &mut stride).ok_or(stuck(&here, radius))?;
-        if on_rim(&next) {
-            return Ok(Trace::RanOff);
+        let next = stride_from(mesh, patches, radius, &here, direction, sign, &mut stride, step / 256.0).ok_or(stuck(&here, radius))?;
+        match footing(&next) {
+            Footing::Firm => {}
+            Footing::AtRim => return Ok(Trace::RanOff),
+            Footing::Tipping => return Err(stuck(&next, radius)),
         }
         let chord = next.center - here.center;
         if travelled > 2.0 * step && closes(&start, &here, chord, direction, step) {
@@ -52,6 +65,10 @@ pub(crate) fn trace<M: Adjacency + Positions>(
                 contacts.pop();
             }
             return Ok(Trace::Closed(contacts));
+        }
+        // Steps are as long as they can be, so a trace that needs more than this crawls round a place it cannot pass.
+        if contacts.len() as f64 > 4.0 * limit / step {
+            return Err(stuck(&next, radius));
         }
         travelled += chord.length();
         contacts.push(next);
@@ -85,15 +102,22 @@ fn stride_from<M: Adjacency + Positions>(
     direction: DVec3,
     sign: f64,
     stride: &mut f64,
+    shortest: f64,
 ) -> Option<Contact> {
-    let shortest = *stride / 64.0;
     while *stride > shortest {
         let ahead = here.center + *stride * direction;
+        let plain = Some((direction, ahead));
         // Where a third contact blocks the way, the point ahead is already nearer to it: its tangent leads round the
-        // corner.
-        let turned = Contact::probe(mesh, patches, radius, ahead).and_then(|c| c.tangent()).map(|t| sign * t);
-        for heading in [Some(direction), turned].into_iter().flatten() {
-            let Some(next) = Contact::seat(mesh, patches, radius, here.center + *stride * heading) else { continue };
+        // corner. The guess is put on the third contact's side, so that its branch is found and not the old one, from
+        // which a spine that turns back in a crevice hardly differs.
+        let round_the_corner = Contact::probe(mesh, patches, radius, ahead).and_then(|c| {
+            let heading = sign * c.tangent()?;
+            let jumped = |s: &usize| c.feet[*s].point.distance(here.feet[*s].point) > 2.0 * *stride;
+            let lean: DVec3 = (0..2).filter(jumped).map(|s| c.normals()[s]).sum();
+            Some((heading, here.center + *stride * (heading - 0.4 * lean)))
+        });
+        for (heading, guess) in [plain, round_the_corner].into_iter().flatten() {
+            let Some(next) = Contact::seat(mesh, patches, radius, guess) else { continue };
             let chord = next.center - here.center;
             if chord.dot(heading) > 0.3 * *stride && chord.length() < 1.8 * *stride && next.tangent().is_some() {
                 return Some(next);

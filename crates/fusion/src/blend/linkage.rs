@@ -37,10 +37,11 @@ pub(crate) struct Opened {
     pub linkages: Vec<[Linkage; 2]>,
 }
 
-/// Cuts both linkages of every rail into the mesh.
+/// Cuts both linkages of every rail into the mesh. Their points move at most `reach` to spare slivers.
 pub(crate) fn cut_linkages<M: Adjacency + Positions + Sync>(
     mesh: &M,
     rails: &[&Rail],
+    reach: f64,
     watch: &Watch,
 ) -> Result<Opened, Trouble> {
     let mut curves = Vec::new();
@@ -54,7 +55,7 @@ pub(crate) fn cut_linkages<M: Adjacency + Positions + Sync>(
                 .collect();
             let (curve, places) = SurfaceCurve::through(mesh, &samples, true, &TraceLimits::default())
                 .map_err(|e| match e {
-                    TraceError::Lost { from, .. } => Trouble::at("a linkage leaves the surface", vec![from]),
+                    TraceError::Lost { from, to, .. } => Trouble::at("a linkage leaves the surface", vec![from.midpoint(to)]),
                     TraceError::BadPoint { point } => {
                         Trouble::at("a linkage leaves the surface", vec![point.position(mesh)])
                     }
@@ -63,7 +64,7 @@ pub(crate) fn cut_linkages<M: Adjacency + Positions + Sync>(
             feet.push(places);
         }
     }
-    let embedded = embed(mesh, &curves, &EmbedParams::default(), watch).map_err(|e| match e {
+    let embedded = embed(mesh, &curves, &EmbedParams { reach, ..EmbedParams::default() }, watch).map_err(|e| match e {
         EmbedError::Crossings(found) => {
             Trouble::at("linkages cross", found.iter().map(|c| c.place).collect())
         }

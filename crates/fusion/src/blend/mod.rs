@@ -119,7 +119,7 @@ pub fn blend(
     params: &Params,
     watch: &Watch,
 ) -> Result<Blended, Error> {
-    let refusal = match attempt(mesh, curves, params, watch) {
+    let refusal = match attempt(mesh, curves, params, ROUNDS, watch) {
         Ok(blended) => return Ok(blended),
         Err(refusal) => refusal,
     };
@@ -129,9 +129,9 @@ pub fn blend(
         Trouble::Spine(e) => Err(e.into()),
         Trouble::Places { what, places } => {
             let mut workable = None;
-            for halvings in 1..=6 {
+            for halvings in 1..=4 {
                 let smaller = Params { radius: params.radius * 0.5f64.powi(halvings), ..params.clone() };
-                match attempt(mesh, curves, &smaller, watch) {
+                match attempt(mesh, curves, &smaller, ROUNDS / 2, watch) {
                     Ok(_) => {
                         workable = Some(smaller.radius);
                         break;
@@ -151,12 +151,18 @@ const ROUNDS: usize = 14;
 
 /// Rolls, cuts, sweeps, sews and checks; where a stage refuses, softens the linkages or shrinks the ball and begins
 /// again with the rails concerned.
-fn attempt(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params, watch: &Watch) -> Result<Blended, Trouble> {
+fn attempt(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &Params,
+    rounds: usize,
+    watch: &Watch,
+) -> Result<Blended, Trouble> {
     let mut mends = Mends::new(params.radius);
     let step = step_length(mesh, curves, params.radius);
     let mut rails: Vec<Option<Rail>> = curves.iter().map(|_| None).collect();
     for round in 0.. {
-        watch.step("blend", round as f64 / ROUNDS as f64)?;
+        watch.step("blend", round as f64 / rounds as f64)?;
         let trouble = match roll_missing(mesh, curves, params, &mends, step, &mut rails)
             .and_then(|()| assemble(mesh, curves, params, step, &rails, watch))
         {
@@ -170,7 +176,7 @@ fn attempt(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params, wa
         if std::env::var_os("BLEND_TRACE").is_some() {
             eprintln!("round {round}: {what}: {} places, first {:?}", places.len(), places.first());
         }
-        if params.overlap == Overlap::Error && round >= 2 || round >= ROUNDS || !mends.add(places, params.overlap) {
+        if params.overlap == Overlap::Error && round >= 2 || round >= rounds || !mends.add(places, params.overlap) {
             return Err(trouble);
         }
         for rail in &mut rails {
@@ -241,7 +247,7 @@ fn assemble(
     watch: &Watch,
 ) -> Result<Blended, Trouble> {
     let rails = distinct(rails, step);
-    let opened = cut_linkages(mesh, &rails, watch)?;
+    let opened = cut_linkages(mesh, &rails, 0.01 * params.radius, watch)?;
     let cut = &opened.embedded.mesh;
     let mut strips = Vec::with_capacity(rails.len());
     let mut first_new = cut.vertex_count() as u32;
