@@ -29,14 +29,15 @@ impl BlendCurve {
     /// # Errors
     /// [`Error::NotAnEdge`] where two consecutive vertices are not so joined.
     pub fn from_vertices<M: Adjacency + Positions>(mesh: &M, cycle: &[VertexId]) -> Result<Self, Error> {
-        let halfedges = (0..cycle.len())
-            .map(|i| {
-                let (a, b) = (cycle[i], cycle[(i + 1) % cycle.len()]);
-                mesh.ring(a)
-                    .find(|&h| mesh.head(h) == b && mesh.twin(h).is_some())
-                    .ok_or_else(|| Error::NotAnEdge { from: a, to: b, at: mesh.position(a) })
-            })
-            .collect::<Result<_, _>>()?;
+        let halfedges =
+            (0..cycle.len())
+                .map(|i| {
+                    let (a, b) = (cycle[i], cycle[(i + 1) % cycle.len()]);
+                    mesh.ring(a)
+                        .find(|&h| mesh.head(h) == b && mesh.twin(h).is_some())
+                        .ok_or_else(|| Error::NotAnEdge { from: a, to: b, at: mesh.position(a) })
+                })
+                .collect::<Result<_, _>>()?;
         Ok(Self { halfedges })
     }
 
@@ -67,11 +68,8 @@ impl BlendCurve {
             }
             kind.0 += a.distance(b);
         }
-        let (kind, minor, major) = if valley.0 >= ridge.0 {
-            (Convexity::Concave, ridge, valley)
-        } else {
-            (Convexity::Convex, valley, ridge)
-        };
+        let (kind, minor, major) =
+            if valley.0 >= ridge.0 { (Convexity::Concave, ridge, valley) } else { (Convexity::Convex, valley, ridge) };
         if minor.0 > 0.1 * (minor.0 + major.0) {
             return Err(Error::MixedConvexity { at: minor.1, share: minor.0 / (minor.0 + major.0) });
         }

@@ -117,7 +117,11 @@ pub(crate) fn fill_jumps<M: Adjacency + Positions>(
             let foot = |s: usize| patches[s].closest(mesh, here.feet[s].point.lerp(next.feet[s].point, t));
             if let (Some(left), Some(right)) = (foot(0), foot(1)) {
                 let center = here.center.lerp(next.center, t);
-                filled.push(Sample { center, radius: here.radius + t * (next.radius - here.radius), feet: [left, right] });
+                filled.push(Sample {
+                    center,
+                    radius: here.radius + t * (next.radius - here.radius),
+                    feet: [left, right],
+                });
             }
         }
     }
@@ -131,9 +135,8 @@ fn arc_lengths(samples: &[Sample]) -> (Vec<f64>, f64) {
         .map(|i| {
             let (a, b) = (&samples[i], &samples[(i + 1) % samples.len()]);
             let start = total;
-            total += (0..2)
-                .map(|s| a.feet[s].point.distance(b.feet[s].point))
-                .fold(a.center.distance(b.center), f64::max);
+            total +=
+                (0..2).map(|s| a.feet[s].point.distance(b.feet[s].point)).fold(a.center.distance(b.center), f64::max);
             start
         })
         .collect();

@@ -38,8 +38,8 @@ pub use patch::{Patch, Side};
 pub use radius::{Dip, RadiusField};
 
 use glam::DVec3;
-use mesh_core::{Adjacency, EdgeId, HalfedgeId, Positions, VertexId};
 use march::Footing;
+use mesh_core::{Adjacency, EdgeId, HalfedgeId, Positions, VertexId};
 use std::collections::HashSet;
 
 /// How the ball rolls.
@@ -91,7 +91,9 @@ pub struct Rail {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
     /// Two consecutive vertices of a curve are not joined by an inner edge.
-    #[error("vertices {from} and {to} at {at} are not joined by an edge with two faces; a blend curve runs along mesh edges")]
+    #[error(
+        "vertices {from} and {to} at {at} are not joined by an edge with two faces; a blend curve runs along mesh edges"
+    )]
     NotAnEdge {
         /// First vertex.
         from: VertexId,
@@ -133,7 +135,9 @@ pub enum Error {
         wanted: f64,
     },
     /// The spine does not close.
-    #[error("the spine has not come back after {travelled}, at {at}, on a curve of length {curve}; try a smaller radius")]
+    #[error(
+        "the spine has not come back after {travelled}, at {at}, on a curve of length {curve}; try a smaller radius"
+    )]
     Astray {
         /// Where the trace was given up.
         at: DVec3,
@@ -205,7 +209,13 @@ pub fn roll<M: Adjacency + Positions + Sync>(
         let samples = regress::regress(&samples, convexity, 3.0 * radius.base);
         let samples = fair::fill_jumps(mesh, &patches, &samples, gap);
         let residual = contacts.iter().map(|c| c.residual).fold(0.0, f64::max);
-        return Ok(Rail { samples, convexity, residual, alpha, patch_faces: patches.each_ref().map(|p| p.faces.len()) });
+        return Ok(Rail {
+            samples,
+            convexity,
+            residual,
+            alpha,
+            patch_faces: patches.each_ref().map(|p| p.faces.len()),
+        });
     }
 }
 

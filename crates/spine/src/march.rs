@@ -5,11 +5,11 @@
 //! not at all, the trace just goes on, and where the ball is blocked by a third contact it turns there, as a real
 //! ball does.
 
+use crate::Error;
 use crate::contact::Contact;
 use crate::curve::{BlendCurve, Convexity, face_normal};
 use crate::patch::Patch;
 use crate::radius::RadiusField;
-use crate::Error;
 use glam::DVec3;
 use mesh_core::{Adjacency, Positions};
 
@@ -53,7 +53,8 @@ pub(crate) fn trace<M: Adjacency + Positions>(
     let (mut here, mut travelled, mut stride) = (start, 0.0, step);
     while travelled < limit {
         let direction = sign * here.tangent().ok_or(stuck(&here, radius))?;
-        let next = stride_from(mesh, patches, radius, &here, direction, sign, &mut stride, step / 256.0).ok_or(stuck(&here, radius))?;
+        let next = stride_from(mesh, patches, radius, &here, direction, sign, &mut stride, step / 256.0)
+            .ok_or(stuck(&here, radius))?;
         match footing(&next) {
             Footing::Firm => {}
             Footing::AtRim => return Ok(Trace::RanOff),
@@ -61,7 +62,10 @@ pub(crate) fn trace<M: Adjacency + Positions>(
         }
         let chord = next.center - here.center;
         if travelled > 2.0 * step && closes(&start, &here, chord, direction, step) {
-            if contacts.len() > 3 && next.center.distance(start.center) > 0.0 && here.center.distance(start.center) < 0.3 * step {
+            if contacts.len() > 3
+                && next.center.distance(start.center) > 0.0
+                && here.center.distance(start.center) < 0.3 * step
+            {
                 contacts.pop();
             }
             return Ok(Trace::Closed(contacts));

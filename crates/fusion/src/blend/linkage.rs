@@ -53,9 +53,11 @@ pub(crate) fn cut_linkages<M: Adjacency + Positions + Sync>(
                 .iter()
                 .map(|s| (s.feet[side].surface_point(mesh), (s.center - s.feet[side].point).normalize_or_zero()))
                 .collect();
-            let (curve, places) = SurfaceCurve::through(mesh, &samples, true, &TraceLimits::default())
-                .map_err(|e| match e {
-                    TraceError::Lost { from, to, .. } => Trouble::at("a linkage leaves the surface", vec![from.midpoint(to)]),
+            let (curve, places) =
+                SurfaceCurve::through(mesh, &samples, true, &TraceLimits::default()).map_err(|e| match e {
+                    TraceError::Lost { from, to, .. } => {
+                        Trouble::at("a linkage leaves the surface", vec![from.midpoint(to)])
+                    }
                     TraceError::BadPoint { point } => {
                         Trouble::at("a linkage leaves the surface", vec![point.position(mesh)])
                     }
@@ -64,19 +66,18 @@ pub(crate) fn cut_linkages<M: Adjacency + Positions + Sync>(
             feet.push(places);
         }
     }
-    let embedded = embed(mesh, &curves, &EmbedParams { reach, ..EmbedParams::default() }, watch).map_err(|e| match e {
-        EmbedError::Crossings(found) => {
-            Trouble::at("linkages cross", found.iter().map(|c| c.place).collect())
-        }
-        EmbedError::Apart { place, .. } | EmbedError::TooSmall { place, .. } => {
-            Trouble::at("a linkage cannot be cut into the mesh", vec![place])
-        }
-        EmbedError::Collapsed { curve } => {
-            Trouble::at("a linkage shrinks to a point", vec![rails[curve / 2].samples[0].center])
-        }
-        EmbedError::Cancelled(c) => Trouble::Cancelled(c),
-        e @ (EmbedError::BadPoint { .. } | EmbedError::TooMany) => Trouble::Embed(e),
-    })?;
+    let embedded =
+        embed(mesh, &curves, &EmbedParams { reach, ..EmbedParams::default() }, watch).map_err(|e| match e {
+            EmbedError::Crossings(found) => Trouble::at("linkages cross", found.iter().map(|c| c.place).collect()),
+            EmbedError::Apart { place, .. } | EmbedError::TooSmall { place, .. } => {
+                Trouble::at("a linkage cannot be cut into the mesh", vec![place])
+            }
+            EmbedError::Collapsed { curve } => {
+                Trouble::at("a linkage shrinks to a point", vec![rails[curve / 2].samples[0].center])
+            }
+            EmbedError::Cancelled(c) => Trouble::Cancelled(c),
+            e @ (EmbedError::BadPoint { .. } | EmbedError::TooMany) => Trouble::Embed(e),
+        })?;
     let mut sides = (0..curves.len()).map(|c| {
         let mut chain = embedded.curves[c].clone();
         let places: Vec<usize> = feet[c].iter().map(|&p| embedded.places[c][p]).collect();

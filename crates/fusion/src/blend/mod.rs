@@ -173,9 +173,6 @@ fn attempt(
             Err(trouble) => trouble,
         };
         let Trouble::Places { what, ref places } = trouble else { return Err(trouble) };
-        if std::env::var_os("BLEND_TRACE").is_some() {
-            eprintln!("round {round}: {what}: {} places, first {:?}", places.len(), places.first());
-        }
         if params.overlap == Overlap::Error && round >= 2 || round >= rounds || !mends.add(places, params.overlap) {
             return Err(trouble);
         }
@@ -226,10 +223,9 @@ fn roll_missing(
             None => {}
             Some(Ok(r)) => *rail = Some(r),
             Some(Err(e)) => match (&e, e.place()) {
-                (
-                    spine::Error::NoStart { .. } | spine::Error::Stuck { .. } | spine::Error::Astray { .. },
-                    Some(at),
-                ) => places.push(at),
+                (spine::Error::NoStart { .. } | spine::Error::Stuck { .. } | spine::Error::Astray { .. }, Some(at)) => {
+                    places.push(at)
+                }
                 _ => return Err(Trouble::Spine(e)),
             },
         }
@@ -262,7 +258,8 @@ fn assemble(
     if !folds.is_empty() {
         return Err(Trouble::at("the swept surface folds", folds));
     }
-    let connected = Connected::new(cut).map_err(|e| Trouble::at("the cut mesh is not a manifold", e.place.into_iter().collect()))?;
+    let connected = Connected::new(cut)
+        .map_err(|e| Trouble::at("the cut mesh is not a manifold", e.place.into_iter().collect()))?;
     let removed = between(mesh, &connected, &opened, curves)?;
     let sewn = sew(&opened, &removed, &strips);
     check(&sewn, watch)?;

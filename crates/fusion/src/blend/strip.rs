@@ -117,7 +117,8 @@ struct Cell<'a> {
 impl Cell<'_> {
     /// Vertex `k` of a column, counted from the left foot.
     fn vertex(&self, column: usize, k: u32) -> VertexId {
-        let end = |side: usize| if column == 0 { self.spans[side][0] } else { self.spans[side][self.spans[side].len() - 1] };
+        let end =
+            |side: usize| if column == 0 { self.spans[side][0] } else { self.spans[side][self.spans[side].len() - 1] };
         match k {
             0 => end(0),
             k if k > self.columns[column].inner => end(1),
