@@ -1,1 +1,92 @@
-fn main() {}
+//! Chores of the workspace, run as `cargo xtask CHORE`.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `ci.rs` | everything a change must pass, in order |
+//! | `regress/` | cases against approved records, real models in bulk |
+//! | `fixtures.rs` | the parts of all cases as files |
+//! | `bench.rs` | benchmarks into a page |
+//! | `tidy.rs` | crate arrows, file lengths, citations, paths |
+
+mod bench;
+mod ci;
+mod fixtures;
+mod regress;
+mod tidy;
+
+use clap::{Parser, Subcommand};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+/// What stopped a chore, as one sentence.
+type Fault = Box<dyn std::error::Error>;
+
+#[derive(Parser)]
+#[command(about = "Chores of the fusion workspace")]
+struct Cli {
+    #[command(subcommand)]
+    chore: Chore,
+}
+
+#[derive(Subcommand)]
+enum Chore {
+    /// Everything a change must pass: format, lints, tests, tidy, regress
+    Ci,
+    /// Runs the benchmarks and renews docs/benchmarks.md
+    Bench,
+    /// Writes the parts of all regression cases as files
+    Fixtures(fixtures::Options),
+    /// Runs the cases of fixtures/ against their approved records; with --models also real models
+    Regress(regress::Options),
+    /// Checks crate arrows, file lengths, citations and paths
+    Tidy,
+}
+
+fn main() -> ExitCode {
+    let result = match Cli::parse().chore {
+        Chore::Ci => ci::run(),
+        Chore::Bench => bench::run(),
+        Chore::Fixtures(options) => fixtures::run(&options),
+        Chore::Regress(options) => regress::run(&options),
+        Chore::Tidy => tidy::run(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(fault) => {
+            eprintln!("error: {fault}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The root of the workspace: the folder above this crate's.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_path_buf).unwrap_or_default()
+}
+
+/// The release build of a program of this workspace, built if need be.
+fn binary(name: &str) -> Result<PathBuf, Fault> {
+    let status = Command::new(env!("CARGO")).args(["build", "--release", "-p", name]).current_dir(root()).status()?;
+    if !status.success() {
+        return Err(format!("{name} does not build").into());
+    }
+    // This program was put into the same folder by the same build.
+    let program = std::env::current_exe()?.with_file_name(name).with_extension(std::env::consts::EXE_EXTENSION);
+    Ok(program)
+}
+
+/// Every file below a folder, in order of name.
+fn walk(folder: &Path, files: &mut Vec<PathBuf>) {
+    let mut entries: Vec<_> = fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path()).collect();
+    entries.sort();
+    for path in entries {
+        if path.is_dir() {
+            if path.file_name().is_none_or(|n| n != "target") {
+                walk(&path, files);
+            }
+        } else {
+            files.push(path);
+        }
+    }
+}

@@ -1,1 +1,54 @@
-fn main() {}
+//! Joins and blends triangle meshes from the command line: arguments, progress and exit codes, nothing else.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `args.rs`, `length.rs` | what can be typed |
+//! | `failure.rs` | exit codes |
+//! | `session.rs` | one command: reading, progress, messages, writing |
+//! | `output.rs` | files that appear all at once or not at all |
+//! | `progress.rs` | bars and Ctrl-C |
+//! | `verbs/` | one file per verb |
+
+mod args;
+mod failure;
+mod length;
+mod output;
+mod progress;
+mod session;
+mod verbs;
+
+use args::{Cli, Verb, with_bare_weld};
+use clap::Parser;
+use failure::Failure;
+use fusion::Operation;
+use session::Session;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse_from(with_bare_weld(std::env::args_os()));
+    match run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn run(cli: Cli) -> Result<(), Failure> {
+    if let Some(threads) = cli.common.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.into())
+            .build_global()
+            .map_err(|e| Failure::usage(format!("cannot start {threads} threads: {e}")))?;
+    }
+    let session = Session::start(cli.common)?;
+    match cli.verb {
+        Verb::Info(args) => verbs::info::run(&session, &args),
+        Verb::Convert(args) => verbs::convert::run(&session, &args),
+        Verb::Features(args) => verbs::features::run(&session, &args),
+        Verb::Union(args) => verbs::join::run(&session, &args, Operation::Union),
+        Verb::Difference(args) => verbs::join::run(&session, &args, Operation::Difference),
+        Verb::Intersection(args) => verbs::join::run(&session, &args, Operation::Intersection),
+        Verb::Render(args) => verbs::render::run(&session, &args),
+        Verb::Demo(args) => verbs::demo::run(&session, &args),
+        Verb::Blend(args) => verbs::blend::run(&session, &args),
+    }
+}

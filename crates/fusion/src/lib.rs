@@ -1,11 +1,54 @@
 //! Pipelines that join and blend triangle meshes.
 //!
+//! ```
+//! use fusion::{Info, features};
+//! use fusion::mesh_core::{Connected, Watch, shapes};
+//!
+//! let cube = shapes::cuboid(glam::DVec3::ONE);
+//! assert_eq!(Info::of(&cube, &Watch::default())?.genus, Some(0));
+//! let curves = features::feature_curves(&Connected::new(cube)?, &features::Params::default());
+//! assert_eq!(curves.len(), 12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! | file | holds |
 //! |---|---|
+//! | `join.rs` | union, difference and intersection, with blended seams |
+//! | `round.rs` | blends along feature curves |
 //! | `blend/` | rolling-ball blends of closed curves |
-//! | `report.rs` | the machine-readable account of a job |
+//! | `outcome.rs`, `validity.rs`, `error.rs` | how every pipeline ends |
+//! | `repair.rs` | welding, orientation, taking apart |
+//! | `info.rs` | counts, measures and defects of one mesh |
+//! | `features.rs` | feature curves by dihedral angle |
+//! | `attributes.rs` | attributes carried from inputs to the result |
+//! | `palette.rs` | which colour shows what a face comes from |
+//! | `report.rs`, `origins_json.rs` | the account of a job, as files |
 
+mod attributes;
 pub mod blend;
+mod error;
+pub mod features;
+mod info;
+pub mod join;
+mod origins_json;
+mod outcome;
+mod palette;
+mod repair;
 mod report;
+pub mod round;
+mod validity;
 
+pub use attributes::carry;
+pub use error::Error;
+pub use info::{Defect, Info, Loop};
+pub use join::join;
+pub use mesh_core;
+pub use origins_json::origins_to_json;
+pub use outcome::Outcome;
+pub use palette::palette_index;
+pub use render;
+pub use repair::{Repair, repair};
 pub use report::{Counts, Quality, Report, Stage, Validity};
+pub use round::round;
+pub use tri_intersect::Operation;
+pub use validity::Invalid;

@@ -1,0 +1,265 @@
+//! What can be typed.
+
+use crate::length::{Length, angle, direction, point, positive_length};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::DVec3;
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// Joins and blends triangle meshes.
+#[derive(Parser)]
+#[command(name = "fusion-cli", version, after_help = AFTER_HELP, max_term_width = 100)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub verb: Verb,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+const AFTER_HELP: &str = "\
+Formats follow the extension: .obj .stl .ply .off .glb .gltf .3mf; `-` is standard input or output.
+Lengths are model units, or a share of the diagonal of the box around all inputs when written `2%`. Angles are degrees.
+
+Exit codes: 0 done; 2 wrong usage; 3 input unreadable or malformed; 4 impossible on this input; 5 the result failed its
+own validation; 6 the output cannot be written; 130 cancelled. Any code but 0 leaves an existing output file as it was.";
+
+/// Options of every verb.
+#[derive(Args)]
+pub struct Common {
+    /// Write a machine-readable report of the job (docs/report.md lists its keys)
+    #[arg(long, value_name = "FILE.json", global = true, help_heading = "Common options")]
+    pub report: Option<PathBuf>,
+    /// Use this many threads; the result is the same for any number
+    #[arg(long, value_name = "N", global = true, help_heading = "Common options",
+          value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Show no progress bars, even on a terminal
+    #[arg(long, global = true, help_heading = "Common options")]
+    pub no_progress: bool,
+    /// Say nothing but errors
+    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Common options")]
+    pub quiet: bool,
+    /// Say what each stage did and how long it took
+    #[arg(short, long, global = true, help_heading = "Common options")]
+    pub verbose: bool,
+}
+
+#[derive(Subcommand)]
+pub enum Verb {
+    /// Measure and check a mesh
+    Info(Info),
+    /// Convert between formats; repair on request
+    Convert(Convert),
+    /// List the feature curves of a mesh
+    Features(Features),
+    /// Join solids into one
+    Union(Join),
+    /// Take all other solids away from the first
+    Difference(Join),
+    /// Keep what all solids share
+    Intersection(Join),
+    /// Roll a ball along feature curves and put in the surface it leaves
+    Blend(Blend),
+    /// Draw a still picture
+    Render(Render),
+    /// Build the showcase models with their reports and pictures; needs no input
+    Demo(Demo),
+}
+
+/// How standard input is read.
+#[derive(Args)]
+pub struct Source {
+    /// Read inputs as this format (obj, stl, ply, off, glb, gltf, 3mf), whatever their extension; needed for `-`
+    #[arg(long, value_name = "FORMAT")]
+    pub from: Option<String>,
+}
+
+/// Where a mesh goes.
+#[derive(Args)]
+pub struct Target {
+    /// Write the result here, or to standard output for `-`
+    #[arg(short, long, value_name = "OUTPUT")]
+    pub output: PathBuf,
+    /// Format of the output, where its extension does not tell; needed for `-`
+    #[arg(long, value_name = "FORMAT")]
+    pub to: Option<String>,
+    /// Write where every vertex and face of the result came from, as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub origins: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct Info {
+    /// The mesh
+    pub mesh: PathBuf,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub source: Source,
+}
+
+#[derive(Args)]
+pub struct Convert {
+    /// The mesh to convert
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub target: Target,
+    #[command(flatten)]
+    pub source: Source,
+    /// Merge vertices at the same place, or no further apart than TOL if given
+    #[arg(long, value_name = "TOL", num_args = 0..=1, default_missing_value = "0")]
+    pub weld: Option<Length>,
+    /// Turn faces so that neighbours agree and closed parts face outward
+    #[arg(long)]
+    pub orient: bool,
+    /// Take apart edges with more than two faces and vertices with more than one fan
+    #[arg(long)]
+    pub split: bool,
+}
+
+#[derive(Args)]
+pub struct Features {
+    /// The mesh
+    pub mesh: PathBuf,
+    /// Least angle between the normals of two neighbouring faces that makes their edge a feature
+    #[arg(long, value_name = "DEG", default_value = "40", value_parser = angle)]
+    pub angle: f64,
+    /// Write the curves here as JSON, with all their points
+    #[arg(short, long, value_name = "CURVES.json")]
+    pub output: Option<PathBuf>,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub source: Source,
+}
+
+#[derive(Args)]
+pub struct Join {
+    /// The solids, two or more, as they are posed in their files
+    #[arg(required = true, num_args = 2.., value_name = "MESH")]
+    pub inputs: Vec<PathBuf>,
+    #[command(flatten)]
+    pub target: Target,
+    #[command(flatten)]
+    pub source: Source,
+    /// Blend the seam with a ball of this radius
+    #[arg(long, value_name = "R", value_parser = positive_length)]
+    pub radius: Option<Length>,
+}
+
+#[derive(Args)]
+pub struct Blend {
+    /// The mesh to blend
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub target: Target,
+    #[command(flatten)]
+    pub source: Source,
+    /// Radius of the ball
+    #[arg(long, value_name = "R", value_parser = positive_length)]
+    pub radius: Length,
+    /// Least angle between the normals of two neighbouring faces that makes their edge a feature
+    #[arg(long, value_name = "DEG", default_value = "40", value_parser = angle)]
+    pub angle: f64,
+    /// Blend only the feature curve nearest this point; may be given more than once
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub near: Vec<DVec3>,
+}
+
+#[derive(Args)]
+pub struct Render {
+    /// The mesh to draw
+    pub mesh: PathBuf,
+    /// The picture, a PNG file
+    #[arg(short, long, value_name = "PICTURE.png")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub source: Source,
+    /// Colour by what
+    #[arg(long, value_enum)]
+    pub color: Option<Color>,
+    /// Where each face comes from, as `--origins` of another verb wrote it
+    #[arg(long, value_name = "FILE.json")]
+    pub origins: Option<PathBuf>,
+    /// Draw the edges
+    #[arg(long)]
+    pub wireframe: bool,
+    /// Direction from the mesh to the eye
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    pub view: Option<DVec3>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=8192))]
+    pub size: u32,
+}
+
+/// What a picture shows by colour.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Color {
+    /// Mean curvature: blue where hollow, red where bulging
+    Curvature,
+    /// Which input each face comes from; needs --origins
+    Origin,
+    /// Shape of each triangle: red for needles, green for equilateral ones
+    Quality,
+    /// Stripes as a mirror would show them: kinks are tangent breaks
+    Zebra,
+}
+
+#[derive(Args)]
+pub struct Demo {
+    /// The folder to fill
+    #[arg(short, long, value_name = "DIR", default_value = "demo")]
+    pub output: PathBuf,
+}
+
+/// Gives `--weld` its default where a file name follows it, which clap would take for the tolerance.
+pub fn with_bare_weld(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let is_length = |a: Option<&OsString>| a.and_then(|a| a.to_str()).is_some_and(|a| a.parse::<Length>().is_ok());
+    let bare = |i: usize| arguments[i] == "--weld" && !is_length(arguments.get(i + 1));
+    (0..arguments.len()).map(|i| if bare(i) { "--weld=0".into() } else { arguments[i].clone() }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    fn parse(line: &str) -> Result<Cli, clap::Error> {
+        Cli::try_parse_from(with_bare_weld(line.split(' ').map(OsString::from)))
+    }
+
+    #[test]
+    fn the_definition_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn weld_takes_a_tolerance_or_none() {
+        for (line, expected) in [
+            ("fusion-cli convert --weld a.stl -o b.obj", Some(Length::Units(0.0))),
+            ("fusion-cli convert --weld 1% a.stl -o b.obj", Some(Length::OfDiagonal(0.01))),
+            ("fusion-cli convert a.stl -o b.obj --weld", Some(Length::Units(0.0))),
+            ("fusion-cli convert a.stl --weld --orient --split -o b.obj", Some(Length::Units(0.0))),
+            ("fusion-cli convert a.stl -o b.obj", None),
+        ] {
+            let Verb::Convert(convert) = parse(line).unwrap().verb else { panic!("{line}") };
+            assert_eq!((convert.weld, convert.input), (expected, "a.stl".into()), "{line}");
+        }
+    }
+
+    #[test]
+    fn directions_may_start_with_a_minus() {
+        assert!(parse("fusion-cli render a.obj -o a.png --view -1,-2,0.5").is_ok());
+        assert!(parse("fusion-cli blend a.obj -o b.obj --radius 1 --near -1,0,0 --near 0,-1,0").is_ok());
+    }
+
+    #[test]
+    fn a_join_needs_two_solids_and_a_radius_above_zero() {
+        assert!(parse("fusion-cli union a.obj -o b.obj").is_err());
+        assert!(parse("fusion-cli union a.obj b.obj -o c.obj --radius 0").is_err());
+        assert!(parse("fusion-cli union a.obj b.obj -o c.obj --radius 2%").is_ok());
+    }
+}

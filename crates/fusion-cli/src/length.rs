@@ -1,0 +1,97 @@
+//! Numbers as they are typed: lengths, points, counts of threads.
+
+use glam::DVec3;
+use std::str::FromStr;
+
+/// A length in model units, or a share of the diagonal of the box around all inputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Length {
+    /// Model units.
+    Units(f64),
+    /// A share of the diagonal; `2%` is 0.02.
+    OfDiagonal(f64),
+}
+
+impl Length {
+    /// The length in model units.
+    pub fn resolve(self, diagonal: f64) -> f64 {
+        match self {
+            Self::Units(length) => length,
+            Self::OfDiagonal(share) => share * diagonal,
+        }
+    }
+}
+
+impl FromStr for Length {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (number, scale): (_, fn(f64) -> Self) = match text.strip_suffix('%') {
+            Some(percent) => (percent, |p| Self::OfDiagonal(p / 100.0)),
+            None => (text, Self::Units),
+        };
+        let value: f64 = number.trim().parse().map_err(|_| {
+            "a length is a number of model units, such as 0.25, or a share of the diagonal, such as 2%".to_string()
+        })?;
+        if value.is_finite() && value >= 0.0 {
+            Ok(scale(value))
+        } else {
+            Err("a length must be finite and not negative".into())
+        }
+    }
+}
+
+/// A length above zero.
+pub fn positive_length(text: &str) -> Result<Length, String> {
+    let length = text.parse()?;
+    if length == Length::Units(0.0) || length == Length::OfDiagonal(0.0) {
+        return Err("must be above zero".into());
+    }
+    Ok(length)
+}
+
+/// A point or direction, `x,y,z`.
+pub fn point(text: &str) -> Result<DVec3, String> {
+    let numbers: Vec<f64> = text.split(',').map_while(|n| n.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z] if text.split(',').count() == 3 && DVec3::new(x, y, z).is_finite() => Ok(DVec3::new(x, y, z)),
+        _ => Err("a point is three finite numbers, such as 0,1.5,-2".into()),
+    }
+}
+
+/// A direction: a point other than the origin.
+pub fn direction(text: &str) -> Result<DVec3, String> {
+    let d = point(text)?;
+    d.try_normalize().ok_or_else(|| "a direction must not be 0,0,0".into())
+}
+
+/// An angle in degrees, in (0, 180).
+pub fn angle(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(a) if a > 0.0 && a < 180.0 => Ok(a),
+        _ => Err("an angle is a number of degrees between 0 and 180".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_units_or_shares() {
+        assert_eq!("0.25".parse(), Ok(Length::Units(0.25)));
+        assert_eq!("2%".parse::<Length>().map(|l| l.resolve(50.0)), Ok(1.0));
+        for bad in ["", "%", "2%%", "nan", "inf", "-1", "-1%", "two"] {
+            assert!(bad.parse::<Length>().is_err(), "{bad}");
+        }
+        assert!(positive_length("0").is_err() && positive_length("0%").is_err());
+    }
+
+    #[test]
+    fn points_have_three_finite_numbers() {
+        assert_eq!(point("0, 1.5,-2"), Ok(DVec3::new(0.0, 1.5, -2.0)));
+        for bad in ["1,2", "1,2,3,4", "1,2,", "1,x,3", "1,2,inf", ""] {
+            assert!(point(bad).is_err(), "{bad}");
+        }
+        assert!(direction("0,0,0").is_err());
+    }
+}

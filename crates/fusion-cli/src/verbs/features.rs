@@ -1,0 +1,80 @@
+//! `features`: the curves along which a surface turns sharply.
+
+use crate::args::Features as Args;
+use crate::failure::Failure;
+use crate::output::{check_writable, print};
+use crate::session::{Session, counts};
+use fusion::Report;
+use fusion::features::{Convexity, FeatureCurve, Params, feature_curves};
+use fusion::mesh_core::{Connected, Faces, Positions, TriMesh};
+use glam::DVec3;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// Lists the feature curves of one mesh.
+pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
+    if let Some(path) = &args.output {
+        check_writable(path)?;
+    }
+    let model = session.read(&args.mesh, &args.source)?;
+    let mut report = Report::new("features", counts(&[args.mesh.clone()], std::slice::from_ref(&model)));
+    let mesh = report.time("connect", || Connected::new(model.mesh)).map_err(Failure::impossible)?;
+    let params = Params { angle: args.angle, ..Params::default() };
+    let curves = report.time("features", || feature_curves(&mesh, &params));
+    let json = || {
+        let list: Vec<_> = curves.iter().enumerate().map(|(id, c)| to_json(&mesh, id, c)).collect();
+        format!("{:#}\n", json!({ "version": 1, "angle": args.angle, "curves": list }))
+    };
+    let files = args.output.iter().map(|path| (path.clone(), json().into_bytes())).collect();
+    session.write_files(files, &report)?;
+    match (args.json, &args.output) {
+        (true, _) => print(&json()),
+        (false, Some(_)) => Ok(()),
+        (false, None) => print(&table(&mesh, &curves)),
+    }
+}
+
+fn table(mesh: &Connected<TriMesh>, curves: &[FeatureCurve]) -> String {
+    let mut text = String::from("  id  edges        length  turn (degrees)  kind             from\n");
+    for (id, curve) in curves.iter().enumerate() {
+        let kind = format!("{}, {}", convexity(curve), if curve.closed { "closed" } else { "open" });
+        let start = curve.halfedges.first().map_or(DVec3::ZERO, |&h| mesh.position(mesh.tail(h)));
+        let turn = format!("{:.1} to {:.1}", curve.angles[0], curve.angles[1]);
+        let _ = writeln!(
+            text,
+            "{id:>4} {:>6} {:>13.6} {turn:>15}  {kind:<15}  {},{},{}",
+            curve.halfedges.len(),
+            curve.length,
+            start.x,
+            start.y,
+            start.z
+        );
+    }
+    text
+}
+
+fn to_json(mesh: &Connected<TriMesh>, id: usize, curve: &FeatureCurve) -> Value {
+    let vertices = curve.vertices(mesh);
+    let points: Vec<_> = vertices.iter().map(|&v| mesh.position(v).to_array()).collect();
+    let mut ends: Vec<[f64; 3]> = vec![];
+    if !curve.closed {
+        ends.extend(points.first().into_iter().chain(points.last()));
+    }
+    json!({
+        "id": id,
+        "length": curve.length,
+        "convexity": convexity(curve),
+        "closed": curve.closed,
+        "angles": curve.angles,
+        "ends": ends,
+        "vertices": vertices.iter().map(|v| v.0).collect::<Vec<_>>(),
+        "points": points,
+    })
+}
+
+fn convexity(curve: &FeatureCurve) -> &'static str {
+    match curve.convexity {
+        Convexity::Convex => "convex",
+        Convexity::Concave => "concave",
+    }
+}

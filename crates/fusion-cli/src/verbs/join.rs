@@ -1,0 +1,37 @@
+//! `union`, `difference` and `intersection`, with or without a blended seam.
+
+use crate::args::Join as Args;
+use crate::failure::Failure;
+use crate::session::{Destination, Session, counts, joint_diagonal};
+use fusion::{Error, Operation, blend, join};
+
+/// Joins the inputs and writes the result.
+pub fn run(session: &Session, args: &Args, operation: Operation) -> Result<(), Failure> {
+    let destination = Destination::check(&args.target, session)?;
+    let models = session.read_all(&args.inputs, &args.source)?;
+    let radius = args.radius.map(|r| r.resolve(joint_diagonal(&models)));
+    let params = join::Params { operation, blend: radius.map(blend::Params::new), format: destination.format };
+    let mut outcome = join(&models, &params, session.watch()).map_err(|e| explain(&e, args))?;
+    let report = &mut outcome.report;
+    report.command = match operation {
+        Operation::Union => "union",
+        Operation::Difference => "difference",
+        Operation::Intersection => "intersection",
+    }
+    .into();
+    report.inputs = counts(&args.inputs, &models);
+    session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
+}
+
+/// The library counts parts; the user knows files.
+fn explain(error: &Error, args: &Args) -> Failure {
+    let mut text = error.to_string();
+    let two = args.inputs.len() == 2;
+    for (i, path) in args.inputs.iter().enumerate() {
+        if two || matches!(error, Error::NotManifold { .. }) {
+            text = text.replace(&format!("part {i} "), &format!("{} ", path.display()));
+        }
+        text = text.replace(&format!("solid {i} "), &format!("{} ", path.display()));
+    }
+    Failure::of(error, text)
+}

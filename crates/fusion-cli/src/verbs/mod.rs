@@ -1,0 +1,9 @@
+//! One file per verb. Each turns arguments into one library call and its result into output.
+
+pub mod blend;
+pub mod convert;
+pub mod demo;
+pub mod features;
+pub mod info;
+pub mod join;
+pub mod render;

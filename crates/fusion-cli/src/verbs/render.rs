@@ -1,0 +1,73 @@
+//! `render`: a still picture.
+
+use crate::args::{Color, Render as Args};
+use crate::failure::Failure;
+use crate::output::check_writable;
+use crate::session::{Session, counts};
+use fusion::mesh_core::TriMesh;
+use fusion::{Report, render};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+/// Draws one mesh.
+pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
+    if args.output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("png")) {
+        return Err(Failure::usage(format!("{} is no .png file; pictures are PNG only", args.output.display())));
+    }
+    check_writable(&args.output)?;
+    let model = session.read(&args.mesh, &args.source)?;
+    let mut report = Report::new("render", counts(std::slice::from_ref(&args.mesh), std::slice::from_ref(&model)));
+    let color = match (args.color, &args.origins) {
+        (None, None) => render::Color::Plain,
+        (None | Some(Color::Origin), Some(path)) => render::Color::Origin(indices(path)?),
+        (Some(Color::Origin), None) => {
+            return Err(Failure::usage("--color origin needs the file that --origins wrote: --origins FILE.json"));
+        }
+        (Some(_), Some(_)) => return Err(Failure::usage("--origins goes with --color origin only")),
+        (Some(Color::Curvature), _) => render::Color::Curvature,
+        (Some(Color::Quality), _) => render::Color::Quality,
+        (Some(Color::Zebra), _) => render::Color::Zebra,
+    };
+    let defaults = render::Params::default();
+    let params = render::Params {
+        width: args.size,
+        height: args.size,
+        view: args.view.unwrap_or(defaults.view),
+        color,
+        wireframe: args.wireframe.then(render::Wireframe::default),
+        ..defaults
+    };
+    let png = report.time("render", || draw(session, &model.mesh, &params))?;
+    session.write_files(vec![(args.output.clone(), png)], &report)
+}
+
+/// A picture as the bytes of a PNG file.
+pub fn draw(session: &Session, mesh: &TriMesh, params: &render::Params) -> Result<Vec<u8>, Failure> {
+    let picture = render::picture(mesh, params, session.watch()).map_err(|e| match e {
+        render::Error::Cancelled(_) => Failure::cancelled(),
+        e => Failure::impossible(e),
+    })?;
+    // The renderer saves to files only; its place is taken by the output once everything has worked.
+    let save = || -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+        let file = tempfile::Builder::new().suffix(".png").tempfile()?.into_temp_path();
+        render::save(&picture, &file)?;
+        Ok(fs::read(&file)?)
+    };
+    save().map_err(Failure::unwritable)
+}
+
+/// A palette index per face, from a file of origins: the parts apart, and apart from what was made new.
+fn indices(path: &Path) -> Result<Vec<u32>, Failure> {
+    let bad = |e: &dyn std::fmt::Display| Failure::unreadable(format!("{}: {e}", path.display()));
+    let text = fs::read_to_string(path).map_err(|e| bad(&e))?;
+    let json: Value = serde_json::from_str(&text).map_err(|e| bad(&e))?;
+    let faces = json["faces"].as_array().ok_or_else(|| bad(&"has no list of faces"))?;
+    let index = |entry: &Value| match entry[0].as_str() {
+        Some("new") => Some(fusion::palette_index(None)),
+        Some(_) => entry[1].as_u64().map(|part| fusion::palette_index(Some(part as u32))),
+        None => None,
+    };
+    let missing = || bad(&"a face's entry is not as docs/report.md describes it");
+    faces.iter().map(|entry| index(entry).ok_or_else(missing)).collect()
+}

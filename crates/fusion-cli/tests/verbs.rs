@@ -1,0 +1,118 @@
+//! What each verb gives, seen from outside.
+
+mod support;
+
+use serde_json::Value;
+use std::fs;
+use support::{Bench, cube};
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+#[test]
+fn info_as_json() {
+    let info = json(Bench::new().run("info a.off --json").expect(0).text());
+    assert_eq!((&info["vertices"], &info["faces"], &info["genus"]), (&8.into(), &12.into(), &0.into()));
+    assert_eq!(info["volume"].as_f64(), Some(1.0));
+    assert_eq!(info["self_intersections"], 0);
+    assert_eq!(info["defects"].as_array().map(Vec::len), Some(0));
+}
+
+#[test]
+fn positions_survive_a_round_trip_bit_for_bit() {
+    let bench = Bench::new();
+    bench.file("a.off", &cube([0.1, 1.0 / 3.0, 1e-17], 1e-3));
+    let bits = |text: &str| -> Vec<u64> {
+        let points = text.lines().skip(2).take(8).flat_map(str::split_whitespace);
+        points.map(|w| w.parse::<f64>().unwrap().to_bits()).collect()
+    };
+    for through in ["obj", "ply"] {
+        bench.run(&format!("convert a.off -o t.{through}")).expect(0);
+        bench.run(&format!("convert t.{through} -o back.off")).expect(0);
+        assert_eq!(bits(&bench.read("back.off")), bits(&bench.read("a.off")), "{through}");
+    }
+}
+
+#[test]
+fn streams_are_pipes_of_any_format() {
+    let bench = Bench::new();
+    let ply = bench.run("convert a.off -o - --to ply").expect(0);
+    let info = json(bench.run_with("info - --from ply --json", &ply.stdout).expect(0).text());
+    assert_eq!(info["faces"], 12);
+    assert_eq!(bench.files(), ["a.off", "b.off"]);
+}
+
+#[test]
+fn features_of_a_box() {
+    let bench = Bench::new();
+    bench.run("features a.off -o curves.json").expect(0);
+    let curves = json(&bench.read("curves.json"));
+    assert_eq!(curves["curves"].as_array().map(Vec::len), Some(12));
+    assert_eq!(curves["curves"][0]["convexity"], "convex");
+    assert_eq!(curves["curves"][3]["id"], 3);
+    assert_eq!(bench.run("features a.off").expect(0).text().lines().count(), 13);
+    assert_eq!(bench.run("features a.off --angle 95").expect(0).text().lines().count(), 1);
+}
+
+#[test]
+fn union_reports_and_traces_itself() {
+    let bench = Bench::new();
+    bench.run("union a.off b.off -o out.ply --report r.json --origins o.json").expect(0);
+    let (report, origins) = (json(&bench.read("r.json")), json(&bench.read("o.json")));
+    let info = json(bench.run("info out.ply --json").expect(0).text());
+    assert_eq!((&info["closed"], &info["self_intersections"]), (&true.into(), &0.into()));
+    // Inclusion and exclusion: the overlap of the two unit boxes is 0.6 · 0.7 · 0.8.
+    assert!((info["volume"].as_f64().unwrap() - (2.0 - 0.6 * 0.7 * 0.8)).abs() < 1e-12);
+    assert_eq!(report["output"]["vertices"], info["vertices"]);
+    assert_eq!(report["validity"]["closed"], true);
+    assert_eq!(origins["vertices"].as_array().map(Vec::len), info["vertices"].as_u64().map(|n| n as usize));
+    let kept = origins["vertices"].as_array().unwrap().iter().filter(|o| o[0] == "input").count();
+    assert_eq!((report["kept_vertices"].as_u64(), kept), (Some(14), 14));
+}
+
+#[test]
+fn difference_and_intersection_obey_the_volumes() {
+    let bench = Bench::new();
+    let overlap = 0.6 * 0.7 * 0.8;
+    for (verb, volume) in [("difference", 1.0 - overlap), ("intersection", overlap)] {
+        bench.run(&format!("{verb} a.off b.off -o out.off")).expect(0);
+        let info = json(bench.run("info out.off --json").expect(0).text());
+        assert!((info["volume"].as_f64().unwrap() - volume).abs() < 1e-12, "{verb}");
+    }
+}
+
+#[test]
+fn threads_do_not_change_a_byte() {
+    let bench = Bench::new();
+    for threads in [1, 2, 5] {
+        bench.run(&format!("union a.off b.off -o out{threads}.ply --threads {threads}")).expect(0);
+        assert_eq!(
+            fs::read(bench.path("out1.ply")).unwrap(),
+            fs::read(bench.path(&format!("out{threads}.ply"))).unwrap()
+        );
+    }
+}
+
+#[test]
+fn quiet_is_silent_and_verbose_tells_stages() {
+    let bench = Bench::new();
+    assert!(bench.run("convert a.off -o out.obj --quiet").expect(0).stderr.is_empty());
+    assert!(bench.run("union a.off b.off -o out.obj -v").expect(0).stderr.contains(" ms"));
+}
+
+#[test]
+fn a_picture_is_a_png() {
+    let bench = Bench::new();
+    bench.run("render a.off -o a.png --size 64 --wireframe").expect(0);
+    let bytes = fs::read(bench.path("a.png")).unwrap();
+    assert!(bytes.starts_with(b"\x89PNG") && bytes[16..24] == [0, 0, 0, 64, 0, 0, 0, 64]);
+}
+
+#[cfg(unix)]
+#[test]
+fn devices_are_written_not_replaced() {
+    let bench = Bench::new();
+    bench.run("convert a.off -o /dev/null --to ply").expect(0);
+    assert!(!fs::metadata("/dev/null").unwrap().is_file());
+}

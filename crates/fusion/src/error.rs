@@ -1,0 +1,91 @@
+//! Why a pipeline gives no result.
+
+use crate::{Invalid, blend};
+use glam::DVec3;
+use mesh_core::{Cancelled, NotManifold};
+
+/// Why there is no result.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// Nothing to join.
+    #[error("{0} solids given; a join needs two or more")]
+    TooFew(usize),
+    /// An input is no oriented 2-manifold.
+    #[error("part {part} is {source}")]
+    NotManifold {
+        /// Which input, counting from 0.
+        part: usize,
+        /// All its defects.
+        source: NotManifold,
+    },
+    /// The parts could not be joined.
+    #[error("{}{source}", .step.map_or(String::new(), |k| format!("joining solid {k} (below: part 1) to those before it (part 0): ")))]
+    Boolean {
+        /// The input that was being joined to all before it, if there are more than two.
+        step: Option<usize>,
+        /// Why.
+        source: tri_intersect::Error,
+    },
+    /// No feature curve can be blended.
+    #[error("{0}")]
+    NoCurve(String, Option<DVec3>),
+    /// A seam could not be blended.
+    #[error(transparent)]
+    Blend(#[from] blend::Error),
+    /// A seam is no closed chain of edges.
+    #[error(transparent)]
+    Seam(#[from] spine::Error),
+    /// The result failed its own validation; nothing is returned.
+    #[error(transparent)]
+    Invalid(#[from] Invalid),
+    /// See [`Watch`].
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl Error {
+    /// Where it happened, in model units.
+    pub fn place(&self) -> Option<DVec3> {
+        use tri_intersect::Error as B;
+        match self {
+            Self::NotManifold { source, .. } => source.place,
+            Self::Boolean { source, .. } => match *source {
+                B::Open { at, .. }
+                | B::Degenerate { at, .. }
+                | B::Tangled { at, .. }
+                | B::Rounding { at }
+                | B::Contact { at }
+                | B::SelfIntersecting { at, .. } => Some(at),
+                _ => None,
+            },
+            Self::Blend(blend::Error::DoesNotFit { at, .. }) => Some(*at),
+            Self::Blend(blend::Error::Spine(error)) | Self::Seam(error) => error.place(),
+            Self::Blend(blend::Error::Invalid(source)) => source.place,
+            Self::Invalid(invalid) => invalid.at,
+            Self::NoCurve(_, at) => *at,
+            Self::Blend(_) | Self::TooFew(_) | Self::Cancelled(_) => None,
+        }
+    }
+
+    /// Whether a result was made and found wanting.
+    pub fn is_invalid_result(&self) -> bool {
+        use tri_intersect::Error as B;
+        matches!(
+            self,
+            Self::Invalid(_)
+                | Self::Blend(blend::Error::Invalid(_))
+                | Self::Boolean { source: B::SelfIntersecting { .. }, .. }
+        )
+    }
+
+    /// Whether the caller asked to stop.
+    pub fn is_cancelled(&self) -> bool {
+        use tri_intersect::Error as B;
+        matches!(
+            self,
+            Self::Cancelled(_)
+                | Self::Blend(blend::Error::Cancelled(_))
+                | Self::Boolean { source: B::Cancelled(_), .. }
+        )
+    }
+}

@@ -1,0 +1,59 @@
+//! Whether a result is sound in the coordinates that a file will hold.
+
+use crate::{Error, Validity};
+use glam::DVec3;
+use mesh_core::{Connected, FaceId, FaceOrigin, Faces, NotManifold, Origins, Watch, boundary_loops, validate};
+use mesh_io::{Format, Model};
+use tri_intersect::self_intersections_among;
+
+/// A result that is not sound.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("the result is not valid{}: {reason}{}", .format.map_or(String::new(), hint), .at.map_or(String::new(), |p| format!(" near {p}")))]
+pub struct Invalid {
+    /// What is wrong.
+    pub reason: String,
+    /// A place, in model units.
+    pub at: Option<DVec3>,
+    /// The format whose rounding broke it, if that was the reason.
+    pub format: Option<Format>,
+}
+
+fn hint(format: Format) -> String {
+    format!(" in the 32-bit coordinates of {format} (write obj, ply or off, or move the model to the origin)")
+}
+
+impl From<NotManifold> for Invalid {
+    fn from(source: NotManifold) -> Self {
+        Self { at: source.place, reason: source.to_string(), format: None }
+    }
+}
+
+/// Checks a result as `format` will hold it: finite, oriented, 2-manifold, closed, and no changed face meeting another.
+///
+/// Faces that rounding moves count as changed. Whole faces of the inputs are trusted among each other.
+pub(crate) fn as_written(model: &Model, origins: &Origins, format: Format, watch: &Watch) -> Result<Validity, Error> {
+    let mesh = &model.mesh;
+    let rounded = mesh_io::as_written(model, format);
+    let (shape, format) = rounded.as_ref().map_or((mesh, None), |r| (r, Some(format)));
+    let invalid = |reason: String, at: Option<DVec3>| Err(Invalid { reason, at, format }.into());
+    let defects = validate(shape);
+    if !defects.is_manifold() || !defects.non_finite.is_empty() {
+        let at = Connected::new(shape).err().and_then(|e| e.place);
+        return invalid(defects.to_string().replace('\n', ";"), at);
+    }
+    if !defects.is_closed() {
+        let hole = || Some(*boundary_loops(&Connected::new(shape).ok()?).first()?.first()?);
+        return invalid("it has a boundary".into(), hole().map(|h| shape.triangle(h.face())[h.corner()]));
+    }
+    let moved = |f: FaceId| rounded.as_ref().is_some_and(|r| r.triangle(f) != mesh.triangle(f));
+    let changed: Vec<FaceId> =
+        shape.face_ids().filter(|&f| !matches!(origins.faces[f], FaceOrigin::Input { .. }) || moved(f)).collect();
+    match self_intersections_among(shape, &changed, watch) {
+        Ok(pairs) => match pairs.first() {
+            None => Ok(Validity { manifold: Some(true), closed: Some(true), self_intersections: Some(0) }),
+            Some(&[f, _]) => invalid(format!("{} pairs of faces intersect", pairs.len()), Some(shape.triangle(f)[0])),
+        },
+        Err(tri_intersect::Error::Cancelled(c)) => Err(c.into()),
+        Err(error) => invalid(error.to_string(), None),
+    }
+}

@@ -1,0 +1,55 @@
+//! Runs the benchmarks and puts their times into docs/benchmarks.md.
+
+use crate::{Fault, root, walk};
+use serde_json::Value;
+use std::fmt::Write;
+use std::fs;
+use std::process::Command;
+
+/// The table stands between these lines of the page; the rest is written by hand.
+const MARKS: [&str; 2] = ["<!-- table: written by cargo xtask bench -->", "<!-- end of table -->"];
+
+/// Runs `cargo bench` and renews the table.
+pub fn run() -> Result<(), Fault> {
+    if !Command::new(env!("CARGO")).args(["bench", "--workspace", "--benches"]).current_dir(root()).status()?.success()
+    {
+        return Err("a benchmark failed".into());
+    }
+    let page = root().join("docs/benchmarks.md");
+    let text = fs::read_to_string(&page)?;
+    let marked = || {
+        let (before, rest) = text.split_once(MARKS[0])?;
+        Some((before, rest.split_once(MARKS[1])?.1))
+    };
+    let (before, after) = marked().ok_or("docs/benchmarks.md has lost the marks around its table")?;
+    fs::write(&page, format!("{before}{}\n{}{}{after}", MARKS[0], table()?, MARKS[1]))?;
+    Ok(())
+}
+
+/// One row per benchmark, in order of name.
+fn table() -> Result<String, Fault> {
+    let mut files = vec![];
+    walk(&root().join("target/criterion"), &mut files);
+    let mut rows = vec![];
+    for file in files.iter().filter(|f| f.ends_with("new/estimates.json")) {
+        let read = |path| -> Result<Value, Fault> { Ok(serde_json::from_str(&fs::read_to_string(path)?)?) };
+        let (name, estimates) = (read(file.with_file_name("benchmark.json"))?, read(file.clone())?);
+        let nanoseconds = estimates["median"]["point_estimate"].as_f64().unwrap_or(f64::NAN);
+        rows.push((name["full_id"].as_str().unwrap_or_default().to_string(), nanoseconds));
+    }
+    rows.sort_by(|a, b| a.0.cmp(&b.0));
+    let mut text = String::from("| benchmark | median |\n|---|---|\n");
+    for (name, nanoseconds) in rows {
+        writeln!(text, "| {name} | {} |", human(nanoseconds))?;
+    }
+    Ok(text)
+}
+
+fn human(nanoseconds: f64) -> String {
+    match nanoseconds {
+        n if n < 1e3 => format!("{n:.0} ns"),
+        n if n < 1e6 => format!("{:.1} µs", n / 1e3),
+        n if n < 1e9 => format!("{:.1} ms", n / 1e6),
+        n => format!("{:.2} s", n / 1e9),
+    }
+}

@@ -1,0 +1,39 @@
+//! Everything a change must pass, in order of how fast it fails.
+
+use crate::{Fault, regress, root, tidy};
+use std::process::Command;
+use std::time::Instant;
+
+/// Runs every check and stops at the first that fails.
+pub fn run() -> Result<(), Fault> {
+    let start = Instant::now();
+    tidy::run()?;
+    if installed("fmt") {
+        cargo(&["fmt", "--all", "--check"])?;
+    }
+    if installed("clippy") {
+        cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])?;
+    }
+    cargo(&["test", "--workspace"])?;
+    regress::run(&regress::Options::default())?;
+    println!("ci: all passed in {:.0} s", start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// Whether a component of the toolchain is there; a minimal installation lacks some.
+fn installed(component: &str) -> bool {
+    let found = Command::new(env!("CARGO")).args([component, "--version"]).output().is_ok_and(|o| o.status.success());
+    if !found {
+        println!("ci: skipped {component}, which is not installed (rustup component add {component})");
+    }
+    found
+}
+
+fn cargo(arguments: &[&str]) -> Result<(), Fault> {
+    let line = arguments.join(" ");
+    println!("ci: cargo {line}");
+    let start = Instant::now();
+    let status = Command::new(env!("CARGO")).args(arguments).current_dir(root()).status()?;
+    println!("ci: cargo {line}: {:.0} s", start.elapsed().as_secs_f64());
+    if status.success() { Ok(()) } else { Err(format!("cargo {line} failed").into()) }
+}

@@ -1,0 +1,88 @@
+//! One job through the library, and what must hold of any result.
+
+use super::case::Operation;
+use fusion::blend;
+use glam::DVec3;
+use mesh_core::{TriMesh, Watch, validate};
+use mesh_io::{Format, Model};
+use mesh_query::TriBvh;
+use std::collections::HashSet;
+use std::time::Instant;
+
+/// A result.
+pub struct Joined {
+    pub mesh: TriMesh,
+    pub warnings: Vec<String>,
+    pub milliseconds: f64,
+}
+
+/// Why there is none.
+pub struct Failure {
+    pub reason: String,
+    pub place: Option<DVec3>,
+    pub milliseconds: f64,
+}
+
+impl Joined {
+    /// What is wrong with the result of a job on `parts`.
+    pub fn faults(&self, parts: &[TriMesh], radius: Option<f64>) -> Vec<String> {
+        let mut faults = vec![];
+        let defects = validate(&self.mesh);
+        if !defects.is_closed() {
+            faults.push(format!("is not valid: {defects}"));
+        }
+        match tri_intersect::self_intersections(&self.mesh, &Watch::default()) {
+            Ok(pairs) if pairs.is_empty() => {}
+            Ok(pairs) => faults.push(format!("intersects itself: {} pairs, first {:?}", pairs.len(), pairs[0])),
+            Err(error) => faults.push(format!("cannot be checked: {error}")),
+        }
+        faults.extend(self.strangers(parts, radius.unwrap_or(0.0)));
+        faults
+    }
+
+    /// A vertex that is no input vertex must lie near the seam, so near two parts at once: a point of a fillet is
+    /// within a diameter of both.
+    fn strangers(&self, parts: &[TriMesh], radius: f64) -> Option<String> {
+        let bits = |p: &DVec3| p.to_array().map(f64::to_bits);
+        let known: HashSet<_> = parts.iter().flat_map(|m| &m.positions).map(bits).collect();
+        let trees: Vec<_> = parts.iter().filter_map(|m| Some((m, TriBvh::build(m).ok()?))).collect();
+        let size = mesh_core::bounds(&self.mesh).diagonal();
+        let reach = 2.0 * radius + 1e-9 * size;
+        let far = self.mesh.positions.iter().filter(|p| !known.contains(&bits(p))).find(|&&p| {
+            let near = |(m, tree): &&(&TriMesh, TriBvh)| tree.closest_point(*m, p).is_some_and(|c| c.distance <= reach);
+            trees.iter().filter(near).count() < 2
+        });
+        far.map(|p| format!("moved or made a vertex at {p}, away from the seam"))
+    }
+}
+
+/// Joins the parts in order.
+pub fn join(parts: &[TriMesh], operation: Operation, radius: Option<f64>) -> Result<Joined, Failure> {
+    let start = Instant::now();
+    let result = run(parts, operation, radius);
+    let milliseconds = 1e3 * start.elapsed().as_secs_f64();
+    match result {
+        Ok((mesh, warnings)) => Ok(Joined { mesh, warnings, milliseconds }),
+        Err((reason, place)) => Err(Failure { reason, place, milliseconds }),
+    }
+}
+
+fn run(
+    parts: &[TriMesh],
+    operation: Operation,
+    radius: Option<f64>,
+) -> Result<(TriMesh, Vec<String>), (String, Option<DVec3>)> {
+    let params = fusion::join::Params {
+        operation: match operation {
+            Operation::Union => fusion::Operation::Union,
+            Operation::Difference => fusion::Operation::Difference,
+            Operation::Intersection => fusion::Operation::Intersection,
+        },
+        blend: radius.map(blend::Params::new),
+        format: Format::Ply,
+    };
+    let models: Vec<_> = parts.iter().cloned().map(Model::from).collect();
+    fusion::join(&models, &params, &Watch::default())
+        .map(|outcome| (outcome.model.mesh, outcome.report.warnings))
+        .map_err(|e| (e.to_string(), e.place()))
+}

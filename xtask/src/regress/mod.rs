@@ -1,0 +1,98 @@
+//! Regression: procedural cases against approved records, and real models in bulk.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `case.rs` | cases as files |
+//! | `golden.rs` | approved records |
+//! | `join.rs` | one job through the library |
+//! | `pairs.rs`, `pose.rs` | pairs of real models in random poses |
+//! | `nasty.rs` | broken files through the command line |
+//! | `reference.rs` | results checked by another library |
+
+mod case;
+mod golden;
+mod join;
+mod nasty;
+mod pairs;
+mod pose;
+mod reference;
+
+use crate::{Fault, root};
+use golden::Golden;
+use mesh_core::TriMesh;
+use reference::Reference;
+use std::path::PathBuf;
+
+/// What to run.
+#[derive(clap::Args, Default)]
+pub struct Options {
+    /// Approve what the cases give now
+    #[arg(long)]
+    bless: bool,
+    /// Also run the pairs of fixtures/pairs.toml and the broken files found in this folder
+    #[arg(long, value_name = "DIR")]
+    models: Option<PathBuf>,
+    /// Only a few of the pairs, at one radius, and no table
+    #[arg(long, requires = "models")]
+    quick: bool,
+    /// Have every result checked by libigl through Python
+    #[arg(long)]
+    reference: bool,
+}
+
+/// Runs all that is asked for and fails if anything is wrong.
+pub fn run(options: &Options) -> Result<(), Fault> {
+    let mut reference = if options.reference { Some(Reference::new()?) } else { None };
+    let mut faults = cases(options.bless, &mut reference)?;
+    if let Some(models) = &options.models {
+        faults += nasty::run(&models.join("nasty"))?;
+        faults += pairs::run(models, options.quick, &mut reference)?;
+    }
+    if faults == 0 { Ok(()) } else { Err(format!("regress found {faults} faults").into()) }
+}
+
+/// The posed parts of every case, by its name.
+pub fn posed_parts() -> Result<Vec<(String, Vec<TriMesh>)>, Fault> {
+    let cases = case::read_all(&root().join("fixtures/cases"))?;
+    Ok(cases.into_iter().map(|(name, case)| (name, case.part.iter().map(case::Part::build).collect())).collect())
+}
+
+fn cases(bless: bool, reference: &mut Option<Reference>) -> Result<usize, Fault> {
+    let fixtures = root().join("fixtures");
+    let mut faults = 0;
+    let all = case::read_all(&fixtures.join("cases"))?;
+    for (name, case) in &all {
+        let record = fixtures.join("golden").join(format!("{name}.toml"));
+        let parts: Vec<_> = case.part.iter().map(case::Part::build).collect();
+        let mut wrong = vec![];
+        match join::join(&parts, case.operation, case.radius) {
+            Err(failure) => wrong.push(failure.reason),
+            Ok(joined) => {
+                wrong.extend(joined.faults(&parts, case.radius));
+                let now = Golden::of(&joined.mesh)?;
+                match Golden::read(&record)? {
+                    _ if bless => now.bless(&record)?,
+                    None => {
+                        wrong.push("has no approved record; look at it, then run `cargo xtask regress --bless`".into())
+                    }
+                    Some(approved) => wrong.extend(now.differences(&approved)),
+                }
+                if let Some(reference) = reference {
+                    reference.add(name, &joined.mesh)?;
+                }
+            }
+        }
+        for fault in &wrong {
+            println!("regress: {name}: {fault}");
+        }
+        faults += wrong.len();
+    }
+    println!("regress: {} cases, {faults} faults", all.len());
+    for (name, verdict) in reference.as_mut().map(Reference::verdicts).transpose()?.unwrap_or_default() {
+        if verdict != "ok" {
+            println!("regress: {name}: libigl: {verdict}");
+            faults += 1;
+        }
+    }
+    Ok(faults)
+}
