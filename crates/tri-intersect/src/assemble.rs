@@ -5,8 +5,11 @@ use crate::boolean::Operation;
 use crate::classify::CUT;
 use crate::cut::{Class, Pieces, Snaps};
 use mesh_core::{Adjacency, FaceId, FaceOrigin, Faces, HalfedgeId, Origins, TriMesh, VertexId, VertexOrigin};
+use rayon::prelude::*;
 
 const NONE: u32 = u32::MAX;
+/// Faces handed to one task.
+const CHUNK: usize = 1 << 14;
 
 /// The result before its contacts are split.
 pub(crate) struct Assembly {
@@ -78,8 +81,12 @@ pub(crate) fn assemble(
     let class_of = [Class::Unknown, Class::Outside, Class::Inside];
     let keeps = [0, 1].map(|w| class_of.map(|c| keep(operation, w, c)));
     let whole = [0, 1].map(|w| {
-        let kept = |&(_, &c): &(usize, &u8)| c != CUT && keeps[w][usize::from(c)].is_some();
-        classes[w].iter().enumerate().filter(kept).map(|(f, _)| f as u32).collect::<Vec<u32>>()
+        let kept = |c: u8| c != CUT && keeps[w][usize::from(c)].is_some();
+        let chunk = |(i, classes): (usize, &[u8])| {
+            let faces = (i * CHUNK) as u32..;
+            classes.iter().zip(faces).filter(|(c, _)| kept(**c)).map(|(_, f)| f).collect::<Vec<u32>>()
+        };
+        classes[w].par_chunks(CHUNK).enumerate().map(chunk).collect::<Vec<_>>().concat()
     });
     let [na, nb] = arrangement.counts;
     let node_of_b: Vec<u32> =
@@ -95,17 +102,22 @@ pub(crate) fn assemble(
     });
 
     let mut vertices = vec![NONE; (na + nb) as usize + arrangement.places.len()];
-    for w in 0..2 {
-        for &f in &whole[w] {
-            for v in parts[w].mesh.corners(FaceId(f)) {
-                vertices[node(w, v) as usize] = 0;
-            }
+    let (of_a, rest) = vertices.split_at_mut(na as usize);
+    let mark = |w: usize, own: &mut [u32]| {
+        whole[w].iter().flat_map(|&f| parts[w].mesh.corners(FaceId(f))).for_each(|v| own[v.index()] = 0);
+    };
+    rayon::join(|| mark(0, of_a), || mark(1, &mut rest[..nb as usize]));
+    for &(v, twin) in &arrangement.twins {
+        if std::mem::replace(&mut vertices[(na + v) as usize], NONE) == 0 {
+            vertices[twin as usize] = 0;
         }
+    }
+    for w in 0..2 {
         for &(i, _) in &kept_pieces[w] {
             pieces[w].triangles[i].iter().for_each(|&n| vertices[n as usize] = 0);
         }
     }
-    let mut nodes = vec![];
+    let mut nodes = Vec::with_capacity(vertices.len());
     for (n, v) in vertices.iter_mut().enumerate() {
         if *v == 0 {
             *v = nodes.len() as u32;
@@ -113,19 +125,19 @@ pub(crate) fn assemble(
         }
     }
 
-    let positions = nodes.iter().map(|&n| arrangement.position(parts, n)).collect();
-    let vertex_origins: Vec<VertexOrigin> = nodes.iter().map(|&n| origin(parts, arrangement, n)).collect();
+    let positions = nodes.par_iter().map(|&n| arrangement.position(parts, n)).collect();
+    let vertex_origins: Vec<VertexOrigin> = nodes.par_iter().map(|&n| origin(parts, arrangement, n)).collect();
     let total = whole[0].len() + whole[1].len() + kept_pieces[0].len() + kept_pieces[1].len();
     let mut faces = Vec::with_capacity(total);
     let mut face_origins = Vec::with_capacity(total);
     let turned = |[x, y, z]: [VertexId; 3], flip: bool| if flip { [x, z, y] } else { [x, y, z] };
     for w in 0..2 {
         let flip = keeps[w][Class::Outside as usize].or(keeps[w][Class::Inside as usize]).unwrap_or(false);
-        for &f in &whole[w] {
-            let corners = parts[w].mesh.corners(FaceId(f)).map(|v| VertexId(vertices[node(w, v) as usize]));
-            faces.push(turned(corners, flip));
-            face_origins.push(FaceOrigin::Input { part: w as u32, face: FaceId(f) });
-        }
+        let corners =
+            |&f: &u32| turned(parts[w].mesh.corners(FaceId(f)).map(|v| VertexId(vertices[node(w, v) as usize])), flip);
+        faces.par_extend(whole[w].par_iter().map(corners));
+        let part = w as u32;
+        face_origins.par_extend(whole[w].par_iter().map(|&f| FaceOrigin::Input { part, face: FaceId(f) }));
     }
     let mut bounds = [faces.len(); 3];
     for w in 0..2 {

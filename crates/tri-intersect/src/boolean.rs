@@ -5,11 +5,15 @@ use crate::assemble::assemble;
 use crate::classify::{CUT, Flood, SeamTable};
 use crate::cut::Snaps;
 use crate::error::Error;
+use crate::near::near;
 use crate::{check, cut, pinch, seam};
 use glam::DVec3;
-use mesh_core::{Adjacency, Connected, FaceId, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, Watch};
+use mesh_core::{
+    Adjacency, Bounds, Connected, FaceId, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, Watch,
+};
 use mesh_query::TriBvh;
 use rayon::prelude::*;
+use std::sync::LazyLock;
 use std::time::Instant;
 
 /// Which points the result holds.
@@ -159,15 +163,11 @@ pub fn boolean(
 ) -> Result<Boolean, Error> {
     let mut clock = Clock { since: Instant::now(), report: Report::default() };
     let parts = arrange::parts(a, b)?;
-    check_solid(&parts)?;
+    let bounds = check_solid(&parts)?;
     clock.lap("check");
-    let (ta, tb) = rayon::join(|| TriBvh::build(a.mesh()), || TriBvh::build(b.mesh()));
-    let (Ok(ta), Ok(tb)) = (ta, tb) else { return Err(Error::Empty("a part has no faces")) };
-    let trees = [ta, tb];
-    clock.lap("trees");
-    let pairs = trees[0].overlapping_pairs(a.mesh(), &trees[1], b.mesh());
+    let near = near(a.mesh(), b.mesh(), bounds);
     clock.lap("pairs");
-    let crossings = arrange::crossings(&parts, &pairs, watch)?;
+    let crossings = arrange::crossings(&parts, &near.pairs, watch)?;
     if let Some(error) = crossings.degenerate_error(&parts) {
         return Err(error);
     }
@@ -181,8 +181,18 @@ pub fn boolean(
     let seams = SeamTable::new(&arrangement, &snaps);
     let flood = |which| Flood { parts: &parts, arrangement: &arrangement, seams: &seams, which };
     let [pa, pb] = &mut pieces;
-    let (ca, cb) = rayon::join(|| flood(0).run(pa, &trees[1]), || flood(1).run(pb, &trees[0]));
-    let classes = [ca?, cb?];
+    // Whole trees are needed only for components that no seam passes.
+    let trees = [a, b].map(|m| LazyLock::new(move || TriBvh::build(m.mesh()).ok()));
+    let (ca, cb) = rayon::join(
+        || flood(0).run(pa, bounds[1], || trees[1].as_ref()),
+        || flood(1).run(pb, bounds[0], || trees[0].as_ref()),
+    );
+    // Where points were snapped, disagreement is rounding's fault and not the part's.
+    let blame = |e: Error| match e {
+        Error::Tangled { at, .. } if snaps.count > 0 => Error::Rounding { at },
+        e => e,
+    };
+    let classes = [ca.map_err(blame)?, cb.map_err(blame)?];
     watch.step("classify", 1.0)?;
     clock.lap("classify");
     let mut result = assemble(&parts, &arrangement, &snaps, &pieces, &classes, operation);
@@ -193,10 +203,10 @@ pub fn boolean(
         }));
     }
     clock.lap("assemble");
-    check::check(&result, &arrangement, &parts, &trees)?;
+    check::check(&result, &arrangement, &parts, &pieces, &near.faces)?;
     watch.step("check", 1.0)?;
     clock.lap("validate");
-    if arrangement.degenerate {
+    if arrangement.degenerate || snaps.count > 0 {
         let first = arrangement.counts[0] + arrangement.counts[1];
         let mut suspect = vec![false; result.nodes.len()];
         for n in arrangement.segments.iter().flat_map(|s| s.ends).chain(first..first + arrangement.places.len() as u32)
@@ -209,6 +219,12 @@ pub fn boolean(
         let copies = pinch::split(&mut result, &suspect);
         if let Some(&v) = copies.first() {
             clock.contact(params, result.mesh.positions[v.index()], copies.len())?;
+        }
+        // Snapping can pinch in ways that no predicate foresees.
+        if snaps.count > 0
+            && let Err(e) = Connected::new(&result.mesh)
+        {
+            return Err(Error::Rounding { at: e.place.unwrap_or(DVec3::ZERO) });
         }
         clock.lap("contacts");
     }
@@ -229,7 +245,7 @@ pub fn boolean(
     clock.lap("seams");
 
     let report = &mut clock.report;
-    report.candidate_pairs = pairs.len();
+    report.candidate_pairs = near.pairs.len();
     report.crossing_pairs = crossings.segments.len();
     report.cut_faces = [0, 1].map(|w| pieces[w].faces.len());
     report.new_vertices = result.nodes.iter().filter(|&&n| n >= arrangement.counts[0] + arrangement.counts[1]).count();
@@ -266,13 +282,14 @@ impl Clock {
     }
 }
 
-/// Closed, and with the normals outward.
-fn check_solid(parts: &[Part; 2]) -> Result<(), Error> {
+/// Closed, and with the normals outward. Returns the boxes.
+fn check_solid(parts: &[Part; 2]) -> Result<[Bounds; 2], Error> {
+    let mut bounds = [Bounds::EMPTY; 2];
     for (part, Part { mesh, .. }) in parts.iter().enumerate() {
         let part = part as u32;
         let points = &mesh.mesh().positions;
         let origin = mesh.mesh().faces.first().map_or(DVec3::ZERO, |c| points[c[0].index()]);
-        let chunks: Vec<(f64, Option<u32>)> = mesh
+        let chunks: Vec<(f64, Option<u32>, Bounds)> = mesh
             .mesh()
             .faces
             .par_chunks(1 << 14)
@@ -280,13 +297,16 @@ fn check_solid(parts: &[Part; 2]) -> Result<(), Error> {
             .map(|(i, faces)| {
                 let mut volume = 0.0;
                 let mut border = None;
+                let mut bounds = Bounds::EMPTY;
                 for (j, c) in faces.iter().enumerate() {
-                    let [p, q, r] = c.map(|v| points[v.index()] - origin);
+                    let corners = c.map(|v| points[v.index()]);
+                    bounds = bounds.union(Bounds::of(corners));
+                    let [p, q, r] = corners.map(|p| p - origin);
                     volume += p.dot(q.cross(r));
                     let f = FaceId(((i << 14) + j) as u32);
                     border = border.or((0..3).map(|k| HalfedgeId::new(f, k)).find(|&h| mesh.twin(h).is_none()));
                 }
-                (volume, border.map(|h| h.0))
+                (volume, border.map(|h| h.0), bounds)
             })
             .collect();
         if let Some(h) = chunks.iter().find_map(|c| c.1) {
@@ -296,6 +316,7 @@ fn check_solid(parts: &[Part; 2]) -> Result<(), Error> {
         if volume < 0.0 {
             return Err(Error::InsideOut { part, volume });
         }
+        bounds[part as usize] = chunks.iter().fold(Bounds::EMPTY, |b, c| b.union(c.2));
     }
-    Ok(())
+    Ok(bounds)
 }

@@ -55,8 +55,13 @@ pub(crate) struct Flood<'a> {
 pub(crate) const CUT: u8 = 255;
 
 impl Flood<'_> {
-    /// Sets the class of every piece, and returns one for every whole face: `Class` as a number, [`CUT`] for cut ones.
-    pub(crate) fn run(&self, pieces: &mut Pieces, tree: &TriBvh) -> Result<Vec<u8>, Error> {
+    /// `bounds` and `tree` are those of the other part. Sets the class of every piece, and returns one for every whole face: `Class` as a number, [`CUT`] for cut ones.
+    pub(crate) fn run<'t>(
+        &self,
+        pieces: &mut Pieces,
+        bounds: Bounds,
+        tree: impl Fn() -> Option<&'t TriBvh>,
+    ) -> Result<Vec<u8>, Error> {
         let mesh = self.parts[self.which].mesh;
         let mut faces = vec![Class::Unknown as u8; mesh.face_count()];
         pieces.faces.iter().for_each(|&f| faces[f as usize] = CUT);
@@ -65,7 +70,7 @@ impl Flood<'_> {
         self.spread(pieces, &mut faces, &edges, &mut stack)?;
         for f in 0..faces.len() {
             if faces[f] == Class::Unknown as u8 {
-                let class = self.alone(FaceId::from(f), tree);
+                let class = self.alone(FaceId::from(f), bounds, &tree);
                 faces[f] = class as u8;
                 stack.push(Item::Face(f as u32, class));
                 self.spread(pieces, &mut faces, &edges, &mut stack)?;
@@ -186,6 +191,7 @@ impl Flood<'_> {
                         let Some(t) = mesh.twin(h) else { continue };
                         let g = t.face();
                         match faces[g.index()] {
+                            c if c == class as u8 => {}
                             CUT => {
                                 let (u, v) = (mesh.tail(h), mesh.head(h));
                                 let (u, v) =
@@ -198,10 +204,7 @@ impl Flood<'_> {
                                 faces[g.index()] = class as u8;
                                 stack.push(Item::Face(g.0, class));
                             }
-                            c if c != class as u8 => {
-                                return Err(self.tangled(self.arrangement.node(self.which, mesh.tail(h))));
-                            }
-                            _ => {}
+                            _ => return Err(self.tangled(self.arrangement.node(self.which, mesh.tail(h)))),
                         }
                     }
                 }
@@ -271,9 +274,8 @@ impl Flood<'_> {
     }
 
     /// The class of a face whose component meets no seam, from its corners or else its middle.
-    fn alone(&self, face: FaceId, tree: &TriBvh) -> Class {
+    fn alone<'t>(&self, face: FaceId, bounds: Bounds, tree: &impl Fn() -> Option<&'t TriBvh>) -> Class {
         let (part, other) = (&self.parts[self.which], &self.parts[1 - self.which]);
-        let bounds = tree.bounds();
         let mesh = other.mesh.mesh();
         let corners = part.mesh.corners(face);
         let scaled = part.triangle(face.0);
@@ -286,6 +288,7 @@ impl Flood<'_> {
             if !ray.overlaps(&bounds) {
                 return Class::Outside;
             }
+            let Some(tree) = tree() else { return Class::Outside };
             if let Some(w) = winding(tree, mesh, &ray, p, |f| other.triangle(f.0)) {
                 return if w > 0 { Class::Inside } else { Class::Outside };
             }

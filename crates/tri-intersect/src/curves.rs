@@ -2,10 +2,10 @@
 
 use crate::arrange::{self, Arrangement, Part, Simplex};
 use crate::error::Error;
+use crate::near::near;
 use crate::seam::chain;
 use glam::DVec3;
-use mesh_core::{Connected, FaceId, Faces, HalfedgeId, Positions, SurfacePoint, TriMesh, VertexId, Watch};
-use mesh_query::TriBvh;
+use mesh_core::{Bounds, Connected, FaceId, Faces, HalfedgeId, Positions, SurfacePoint, TriMesh, VertexId, Watch};
 
 /// A curve in which two surfaces cross.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,10 +35,8 @@ pub struct CurvePoint {
 /// [`Error::NotFinite`], [`Error::Degenerate`], [`Error::Cancelled`].
 pub fn intersection_curves(a: &Connected<TriMesh>, b: &Connected<TriMesh>, watch: &Watch) -> Result<Vec<Curve>, Error> {
     let parts = arrange::parts(a, b)?;
-    let (ta, tb) = rayon::join(|| TriBvh::build(a.mesh()), || TriBvh::build(b.mesh()));
-    let (Ok(ta), Ok(tb)) = (ta, tb) else { return Ok(vec![]) };
-    let pairs = ta.overlapping_pairs(a.mesh(), &tb, b.mesh());
-    let crossings = arrange::crossings(&parts, &pairs, watch)?;
+    let bounds = [a, b].map(|m| Bounds::of(m.mesh().faces.iter().flatten().map(|&v| m.position(v))));
+    let crossings = arrange::crossings(&parts, &near(a.mesh(), b.mesh(), bounds).pairs, watch)?;
     if let Some(error) = crossings.degenerate_error(&parts) {
         return Err(error);
     }

@@ -18,6 +18,7 @@ mod error;
 mod exact;
 mod fold;
 mod inside;
+mod near;
 mod pinch;
 mod predicate;
 mod seam;

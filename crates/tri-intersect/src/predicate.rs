@@ -1,12 +1,15 @@
 //! Exact signs of orientation, and the scaling that keeps them exact for coordinates of any size.
 
 use glam::DVec3;
+use rayon::prelude::*;
 use robust::{Coord, Coord3D};
 use std::borrow::Cow;
 
 /// Coordinates whose size lies outside `[TINY, HUGE]` are scaled by a power of two before any product is formed:
 /// products of six of them must neither overflow nor lose bits to underflow.
 const HUGE: f64 = 1.267_650_600_228_229_4e30; // 2^100
+/// Points handed to one task.
+const CHUNK: usize = 1 << 14;
 const TINY: f64 = 7.888_609_052_210_118e-31; // 2^-100
 
 fn sign(x: f64) -> i8 {
@@ -109,10 +112,10 @@ pub(crate) fn scaled<'a>(points: impl Into<Cow<'a, [DVec3]>>, largest: f64) -> C
     let points = points.into();
     let scale = scale_for(largest);
     let tiny = |x: f64| x != 0.0 && x.abs() < TINY;
-    if scale == 1.0 && !points.iter().any(|p| tiny(p.x) || tiny(p.y) || tiny(p.z)) {
+    if scale == 1.0 && !points.par_iter().with_min_len(CHUNK).any(|p| tiny(p.x) || tiny(p.y) || tiny(p.z)) {
         return points;
     }
-    points.iter().map(|p| rescaled(*p, scale)).collect()
+    points.par_iter().with_min_len(CHUNK).map(|p| rescaled(*p, scale)).collect::<Vec<_>>().into()
 }
 
 /// One point, scaled, tiny coordinates set to zero.
@@ -123,10 +126,8 @@ pub(crate) fn rescaled(p: DVec3, scale: f64) -> DVec3 {
 
 /// The largest coordinate by size; NaN or infinite if one is.
 pub(crate) fn largest(points: &[DVec3]) -> f64 {
-    points.iter().fold(0.0, |m, p| {
-        let c = p.abs().max_element();
-        if p.is_finite() { f64::max(m, c) } else { f64::INFINITY }
-    })
+    let size = |p: &DVec3| if p.is_finite() { p.abs().max_element() } else { f64::INFINITY };
+    points.par_iter().with_min_len(CHUNK).map(size).reduce(|| 0.0, f64::max)
 }
 
 /// 1 for ordinary sizes, else the power of two that brings `largest` near 1.
