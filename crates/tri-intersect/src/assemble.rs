@@ -12,6 +12,7 @@ const NONE: u32 = u32::MAX;
 const CHUNK: usize = 1 << 14;
 
 /// The result before its contacts are split.
+#[derive(Clone)]
 pub(crate) struct Assembly {
     pub mesh: TriMesh,
     pub origins: Origins,

@@ -6,7 +6,7 @@ use crate::classify::{CUT, Flood, SeamTable};
 use crate::cut::Snaps;
 use crate::error::Error;
 use crate::near::near;
-use crate::{check, cut, pinch, seam};
+use crate::{check, cut, pinch, seam, tidy};
 use glam::DVec3;
 use mesh_core::{
     Adjacency, Bounds, Connected, FaceId, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, Watch,
@@ -206,6 +206,23 @@ pub fn boolean(
     check::check(&result, &arrangement, &parts, &pieces, &near.faces)?;
     watch.step("check", 1.0)?;
     clock.lap("validate");
+    if let Slivers::Collapse { tolerance } = params.slivers
+        && !arrangement.degenerate
+    {
+        let length = tolerance * bounds[0].union(bounds[1]).diagonal();
+        let short = tidy::short_edges(&result, arrangement.counts[0] + arrangement.counts[1], length);
+        if !short.is_empty() {
+            let before = result.clone();
+            let edges = tidy::collapse(&mut result, &arrangement, &parts, &short, length);
+            // Better a short edge than an intersection.
+            if check::check(&result, &arrangement, &parts, &pieces, &near.faces).is_err() {
+                result = before;
+            } else if edges > 0 {
+                clock.report.warnings.push(Warning::Collapsed { edges });
+            }
+        }
+        clock.lap("slivers");
+    }
     if arrangement.degenerate || snaps.count > 0 {
         let first = arrangement.counts[0] + arrangement.counts[1];
         let mut suspect = vec![false; result.nodes.len()];

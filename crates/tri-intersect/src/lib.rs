@@ -23,6 +23,7 @@ mod pinch;
 mod predicate;
 mod seam;
 mod self_test;
+mod tidy;
 mod triangulate;
 
 pub use boolean::{Boolean, Contact, Operation, Params, Report, Seam, Slivers, Warning, boolean};

@@ -4,7 +4,7 @@ use glam::DVec3;
 use mesh_core::{Connected, FaceOrigin, Faces, TriMesh, VertexOrigin, Watch, shapes};
 use proptest::prelude::*;
 use std::collections::HashMap;
-use tri_intersect::{Boolean, Error, Operation, Params, boolean, boolean_all, self_intersections, union_all};
+use tri_intersect::{Boolean, Error, Operation, Params, Slivers, boolean, boolean_all, self_intersections, union_all};
 
 fn moved(mut mesh: TriMesh, by: DVec3) -> TriMesh {
     mesh.positions.iter_mut().for_each(|p| *p += by);
@@ -241,6 +241,35 @@ fn refusals_have_a_place() {
     watch.cancel();
     let c = Connected::new(cube).unwrap();
     assert!(matches!(boolean(&c, &c, Operation::Union, &Params::default(), &watch), Err(Error::Cancelled(_))));
+}
+
+/// With a coarse tolerance most of the seam's short edges go, the result stays valid, and nothing moves farther.
+#[test]
+fn short_edges_collapse_within_the_tolerance() {
+    let a = shapes::icosphere(1.0, 4);
+    let b = moved(a.clone(), DVec3::new(0.513, 0.217, 0.131));
+    let connect = |m: &TriMesh| Connected::new(m.clone()).unwrap();
+    let with = |slivers| {
+        let params = Params { slivers, ..Params::default() };
+        boolean(&connect(&a), &connect(&b), Operation::Union, &params, &Watch::default()).unwrap()
+    };
+    let kept = with(Slivers::Keep);
+    let diagonal = mesh_core::Bounds::of(a.positions.iter().chain(&b.positions).copied()).diagonal();
+    let tolerance = 2e-3;
+    let tidy = with(Slivers::Collapse { tolerance });
+    assert!(tidy.mesh.positions.len() < kept.mesh.positions.len());
+    let mesh = connect(&tidy.mesh);
+    assert!(mesh_core::boundary_loops(&mesh).is_empty());
+    assert!(self_intersections(&tidy.mesh, &Watch::default()).unwrap().is_empty());
+    assert!((volume(&tidy.mesh) - volume(&kept.mesh)).abs() < tolerance * diagonal);
+    assert!(tidy.mesh.positions.iter().all(|p| kept.mesh.positions.contains(p)));
+    let short = |m: &TriMesh| {
+        let edge = |t: &[mesh_core::VertexId; 3], k: usize| {
+            m.positions[t[k].index()].distance(m.positions[t[(k + 1) % 3].index()]) < tolerance * diagonal
+        };
+        m.faces.iter().map(|t| (0..3).filter(|&k| edge(t, k)).count()).sum::<usize>()
+    };
+    assert!(3 * short(&tidy.mesh) < short(&kept.mesh), "{} {}", short(&tidy.mesh), short(&kept.mesh));
 }
 
 proptest! {
