@@ -107,6 +107,9 @@ impl Parts {
             return Err(Fault::whole(format!("{part}: a transform makes coordinates infinite")));
         }
         let mirrored = transform.determinant() < 0.0;
+        if object.triangles.is_empty() {
+            return Ok(());
+        }
         let group = self.group(&object.name);
         for (triangle, property) in object.triangles.iter().zip(&object.properties) {
             let order = if mirrored { [0, 2, 1] } else { [0, 1, 2] };
