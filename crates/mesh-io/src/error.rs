@@ -122,7 +122,7 @@ impl Spot {
             Self::Binary(offset) => At::Byte(offset as u64),
             Self::Text(offset) => {
                 let before = &bytes[..offset.min(bytes.len())];
-                At::Line(1 + before.iter().filter(|&&b| b == b'\n').count() as u64)
+                At::Line(before.split(|&b| b == b'\n').count() as u64)
             }
         }
     }

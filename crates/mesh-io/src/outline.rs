@@ -13,9 +13,8 @@ pub(crate) struct Outline {
 
 impl Outline {
     pub fn of(model: &Model) -> Self {
-        let triangles = model.mesh.faces.len();
         let Some(polygons) = model.polygons.as_ref().filter(|p| p.fit(&model.mesh)) else {
-            return Self { starts: None, corners: vec![], triangles };
+            return Self::triangles(model);
         };
         let (mut starts, mut corners) = (vec![0u32], Vec::with_capacity(polygons.corners.len()));
         let mut by_vertex: Vec<(VertexId, u32)> = vec![];
@@ -41,7 +40,17 @@ impl Outline {
                 starts.extend((from + 3..=corners.len()).step_by(3).map(|end| end as u32));
             }
         }
-        Self { starts: Some(starts), corners, triangles }
+        Self { starts: Some(starts), corners, triangles: model.mesh.faces.len() }
+    }
+
+    /// The triangles, whatever polygons they were cut from.
+    pub fn triangles(model: &Model) -> Self {
+        Self { starts: None, corners: vec![], triangles: model.mesh.faces.len() }
+    }
+
+    /// Whether all polygons have the same number of corners.
+    pub fn is_uniform(&self) -> bool {
+        self.starts.as_ref().is_none_or(|s| s.windows(3).all(|w| w[1] - w[0] == w[2] - w[1]))
     }
 
     /// How many polygons.

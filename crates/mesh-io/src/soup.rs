@@ -86,7 +86,7 @@ impl Soup {
         }
         let ids: Vec<u32> = (0..sizes.len() as u32).collect();
         let pieces: Vec<Piece> = ids.par_chunks(CHUNK).map(|ids| self.cut(ids, &starts)).collect();
-        Ok(self.join(pieces, notes, locate))
+        Ok(self.join(&pieces, notes, locate))
     }
 
     fn cut(&self, ids: &[u32], starts: &[u32]) -> Piece {
@@ -133,7 +133,7 @@ impl Soup {
         piece
     }
 
-    fn join(self, pieces: Vec<Piece>, notes: &mut Notes, locate: impl Fn(usize) -> Option<Spot>) -> Triangulated {
+    fn join(self, pieces: &[Piece], notes: &mut Notes, locate: impl Fn(usize) -> Option<Spot>) -> Triangulated {
         let total = |count: fn(&Piece) -> usize| pieces.iter().map(count).sum::<usize>();
         let (cut, folded, dropped) = (total(|p| p.cut), total(|p| p.folded), total(|p| p.dropped));
         let first_large = self.sizes.as_ref().and_then(|s| s.iter().position(|&n| n > 3)).and_then(locate);

@@ -7,7 +7,7 @@ use crate::notes::Notes;
 use crate::soup::Soup;
 use crate::text::{Cursor, show};
 use crate::weld::weld_exact;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use mesh_core::{FaceId, TriMesh};
 use rayon::prelude::*;
 
@@ -178,7 +178,7 @@ pub(crate) fn encode(model: &Model) -> Encoded {
     encoded.body.extend(in_pieces(mesh.faces.len(), |f, out| {
         let corners = mesh.triangle(FaceId(f as u32)).map(DVec3::as_vec3);
         // From f64, so that the normal of a thin facet is not all rounding.
-        let [a, b, c] = corners.map(|p| p.as_dvec3());
+        let [a, b, c] = corners.map(Vec3::as_dvec3);
         let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
         for p in [normal, corners[0], corners[1], corners[2]] {
             for x in p.to_array() {

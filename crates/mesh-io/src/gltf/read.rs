@@ -161,13 +161,12 @@ impl Scene<'_> {
                 notes.add("primitives without positions passed over", 1, None);
                 continue;
             };
-            let base = match bases.get(&accessor) {
-                Some(&base) => base,
-                None => {
-                    let base = self.add_vertices(accessor, transform)?;
-                    bases.insert(accessor, base);
-                    base
-                }
+            let base = if let Some(&base) = bases.get(&accessor) {
+                base
+            } else {
+                let base = self.add_vertices(accessor, transform)?;
+                bases.insert(accessor, base);
+                base
             };
             self.add_faces(&primitive, mode, accessor, base, name, transform)?;
         }
@@ -232,7 +231,9 @@ impl Scene<'_> {
         };
         let mut triangles = triangles(&indices, mode).ok_or_else(|| primitive.fault("the mode must be from 0 to 6"))?;
         if transform.determinant() < 0.0 {
-            triangles.iter_mut().for_each(|t| t.swap(1, 2));
+            for t in &mut triangles {
+                t.swap(1, 2);
+            }
         }
         let material = primitive.get("material").index()?;
         let material_node = material.map(|m| self.document.get("materials").item(m)).transpose()?;

@@ -7,6 +7,7 @@ use crate::model::{Material, Materials, Model, TextureSource};
 use crate::notes::Notes;
 use crate::vary::{Value as _, distinct};
 use glam::DVec3;
+use mesh_core::IdMap;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -133,10 +134,10 @@ fn document(model: &Model, store: &mut Store, target: Option<&Target>, encoded: 
 /// Returns the attributes' accessors and the stored vertex of each corner.
 fn vertices(model: &Model, store: &mut Store, notes: &mut Notes) -> (Value, Vec<u32>) {
     let mesh = &model.mesh;
-    let uvs = model.uvs.as_ref().map(|m| m.as_slice());
-    let colors = model.colors.as_ref().map(|m| m.as_slice());
+    let uvs = model.uvs.as_ref().map(IdMap::as_slice);
+    let colors = model.colors.as_ref().map(IdMap::as_slice);
     let usable = |n: &&DVec3| n.try_normalize().is_some();
-    let normals = model.normals.as_ref().map(|m| m.as_slice());
+    let normals = model.normals.as_ref().map(IdMap::as_slice);
     let normals = normals.filter(|all| {
         let missing = all.len() - all.iter().filter(usable).count();
         notes.add("normals dropped, since glTF needs one at every corner and some have none", missing, None);

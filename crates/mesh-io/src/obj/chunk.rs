@@ -44,7 +44,7 @@ pub(super) struct Chunk {
 
 /// A reference made absolute, given how many elements come before the chunk; `None` before the first element.
 pub(super) fn resolve(r: Ref, before: usize) -> Option<usize> {
-    let index = if r >= RELATIVE / 2 { r - RELATIVE + before as i64 } else { r };
+    let index = if r >= RELATIVE / 2 { r - RELATIVE + before.cast_signed() as i64 } else { r };
     usize::try_from(index).ok()
 }
 
@@ -212,7 +212,7 @@ fn reference(index: i64, count: usize) -> Option<Ref> {
     match index {
         0 => None,
         1.. => Some(index - 1),
-        _ => Some(RELATIVE + count as i64 + index),
+        _ => Some(RELATIVE + count.cast_signed() as i64 + index),
     }
 }
 

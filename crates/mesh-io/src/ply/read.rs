@@ -167,7 +167,7 @@ fn read_body<B: Body>(header: &Header, body: &mut B, folder: &Folder, notes: &mu
             "tristrips" => contents.strips(element, body, notes)?,
             name => {
                 notes.add(&format!("`{name}` elements passed over"), element.count, Some(body.spot()));
-                contents.others(element, body, notes)?;
+                Contents::others(element, body, notes)?;
             }
         }
     }
@@ -341,7 +341,7 @@ impl Contents {
         Ok(())
     }
 
-    fn others<B: Body>(&mut self, element: &Element, body: &mut B, notes: &mut Notes) -> Result<(), Fault> {
+    fn others<B: Body>(element: &Element, body: &mut B, notes: &mut Notes) -> Result<(), Fault> {
         let mut row = vec![0.0; element.properties.len()];
         for index in 0..element.count {
             body.begin_row(element, index)?;
@@ -372,10 +372,10 @@ impl Contents {
         let cut = self.soup.triangulate(notes, |i| Some(self.spots[i]))?;
         let corners = cut.mesh.faces.as_flattened();
         let at_corners = |values: &[[f64; 2]]| corners.iter().map(|v| values[v.index()]).collect::<Vec<_>>();
-        let uvs = if !self.corner_uvs.is_empty() {
-            Some(cut.gather_corners(|i| self.corner_uvs[i]))
-        } else {
+        let uvs = if self.corner_uvs.is_empty() {
             (!self.uvs.is_empty()).then(|| at_corners(&self.uvs))
+        } else {
+            Some(cut.gather_corners(|i| self.corner_uvs[i]))
         };
         let normals =
             (!self.normals.is_empty()).then(|| corners.iter().map(|v| self.normals[v.index()]).collect::<Vec<_>>());

@@ -34,7 +34,12 @@ pub(crate) fn encode(model: &Model, target: Option<&Target>) -> Encoded {
         encoded.notes.add(what, 1, None);
     }
 
-    let outline = Outline::of(model);
+    // Mixed sizes are legal, but widespread readers take the first face's size for all.
+    let mut outline = Outline::of(model);
+    if !outline.is_uniform() {
+        outline = Outline::triangles(model);
+        encoded.notes.add("polygons of mixed sizes written as triangles", 1, None);
+    }
     let mut head = String::from("ply\nformat binary_little_endian 1.0\n");
     if let Some(name) = &texture {
         let _ = writeln!(head, "comment TextureFile {name}");
@@ -71,9 +76,15 @@ pub(crate) fn encode(model: &Model, target: Option<&Target>) -> Encoded {
 
     encoded.body.extend(in_pieces(mesh.positions.len(), |i, out| {
         push_doubles(out, &mesh.positions[i].to_array());
-        normals.iter().for_each(|m| push_doubles(out, &m[i].to_array()));
-        uvs.iter().for_each(|m| push_doubles(out, &m[i]));
-        colors.iter().for_each(|m| out.extend(bytes_of(m[i])));
+        if let Some(normals) = &normals {
+            push_doubles(out, &normals[i].to_array());
+        }
+        if let Some(uvs) = &uvs {
+            push_doubles(out, &uvs[i]);
+        }
+        if let Some(colors) = &colors {
+            out.extend(bytes_of(colors[i]));
+        }
     }));
     let vertices = mesh.faces.as_flattened();
     encoded.body.extend(in_pieces(outline.len(), |i, out| {
@@ -92,14 +103,17 @@ pub(crate) fn encode(model: &Model, target: Option<&Target>) -> Encoded {
             }
         }
         let face = corners.clone().next().map_or(0, |c| c / 3);
-        face_colors.iter().for_each(|m| out.extend(bytes_of(m[face])));
+        if let Some(colors) = &face_colors {
+            out.extend(bytes_of(colors[face]));
+        }
     }));
     encoded
 }
 
 fn push_doubles(out: &mut Vec<u8>, values: &[f64]) {
-    for x in values {
-        out.extend(x.to_le_bytes());
+    for &x in values {
+        // No value: PLY has no way to leave one out, and few readers expect NaN.
+        out.extend(if x.is_nan() { 0.0 } else { x }.to_le_bytes());
     }
 }
 

@@ -53,7 +53,7 @@ pub(super) fn parse(text: &str, part: &str, notes: &mut Notes) -> Result<Documen
         let event = reader.read_event();
         let line = |reader: &Reader<&[u8]>| {
             let end = (reader.buffer_position() as usize).min(text.len());
-            1 + text.as_bytes()[..end].iter().filter(|&&b| b == b'\n').count()
+            text.as_bytes()[..end].split(|&b| b == b'\n').count()
         };
         let result = match event {
             Err(error) => Err(error.to_string()),

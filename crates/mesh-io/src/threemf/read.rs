@@ -118,10 +118,11 @@ impl Parts {
             self.group_of.push(group);
             let found = property.and_then(|(id, entries)| Some((id, entries, document.groups.get(&id)?)));
             let mut colors = [[f64::NAN; 4]; 3];
-            let mut material = None;
+            let (mut key, mut look) = (None, None);
             match found {
                 Some((id, entries, PropertyGroup::Materials(list))) if (entries[0] as usize) < list.len() => {
-                    material = Some(((part.to_owned(), id, entries[0]), &list[entries[0] as usize]));
+                    key = Some((part.to_owned(), id, entries[0]));
+                    look = list.get(entries[0] as usize);
                 }
                 Some((_, entries, PropertyGroup::Colors(list))) => {
                     colors = order.map(|k| list.get(entries[k] as usize).copied().unwrap_or([f64::NAN; 4]));
@@ -129,7 +130,7 @@ impl Parts {
                 _ => {}
             }
             self.colors.extend(colors);
-            let material = self.material(material);
+            let material = self.material(key, look);
             self.material_of.push(material);
         }
         Ok(())
@@ -144,9 +145,9 @@ impl Parts {
         id
     }
 
-    fn material(&mut self, found: Option<((String, u32, u32), &(String, [f64; 4]))>) -> u32 {
+    /// The number of a material, given its part, group and entry; `look` describes it when first met.
+    fn material(&mut self, key: Option<(String, u32, u32)>, look: Option<&(String, [f64; 4])>) -> u32 {
         let next = self.materials.len() as u32;
-        let (key, look) = found.unzip();
         let id = *self.material_ids.entry(key).or_insert(next);
         if id == next {
             let plain = Material::default();

@@ -4,7 +4,8 @@ use crate::encode::{Encoded, clean_name, in_pieces};
 use crate::model::Model;
 use crate::number::{push_f64, push_u64};
 use std::collections::BTreeMap;
-use std::io::{Cursor, Write};
+use std::fmt::Write as _;
+use std::io::{Cursor, Write as _};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
@@ -69,20 +70,20 @@ fn model_text(model: &Model, encoded: &mut Encoded) -> Vec<Vec<u8>> {
         head.push_str("<basematerials id=\"1\">\n");
         for material in &materials.list {
             let color = hex(bytes_of(material.base_color));
-            head.push_str(&format!("<base name=\"{}\" displaycolor=\"{color}\"/>\n", escaped(&material.name)));
+            let _ = writeln!(head, "<base name=\"{}\" displaycolor=\"{color}\"/>", escaped(&material.name));
         }
         head.push_str("</basematerials>\n");
     }
     if !colors.is_empty() {
         head.push_str("<m:colorgroup id=\"1\">\n");
         for &color in &colors {
-            head.push_str(&format!("<m:color color=\"{}\"/>\n", hex(color)));
+            let _ = writeln!(head, "<m:color color=\"{}\"/>", hex(color));
         }
         head.push_str("</m:colorgroup>\n");
     }
     let name = model.groups.as_ref().filter(|g| g.names.len() == 1).map_or("", |g| &g.names[0]);
     let name = if name.is_empty() { String::new() } else { format!(" name=\"{}\"", escaped(name)) };
-    head.push_str(&format!("<object id=\"2\" type=\"model\"{name}>\n<mesh>\n<vertices>\n"));
+    let _ = write!(head, "<object id=\"2\" type=\"model\"{name}>\n<mesh>\n<vertices>\n");
 
     let mut text = vec![head.into_bytes()];
     text.extend(in_pieces(mesh.positions.len(), |i, out| {

@@ -1,24 +1,23 @@
-//! OFF, the Object File Format of Geomview, in its text dialects.
+//! Reads OFF in its text dialects, and hands binary ones on.
 
-use crate::encode::{Encoded, in_pieces};
 use crate::error::{Fault, Spot};
 use crate::model::Model;
 use crate::notes::Notes;
-use crate::number::{push_f64, push_u64};
-use crate::outline::Outline;
 use crate::soup::Soup;
 use crate::text::{Cursor, show};
-use crate::vary::{Value, per_face, per_vertex};
+use crate::vary::Value;
 use glam::DVec3;
 
-/// What a header's prefix letters promise of every vertex.
+/// What a header's prefix letters promise of every vertex, and of the file.
 #[derive(Clone, Copy, Default)]
-struct Dialect {
-    uvs: bool,
-    colors: bool,
-    normals: bool,
-    homogeneous: bool,
-    dimensions: usize,
+#[allow(clippy::struct_excessive_bools)] // one per prefix letter, all independent
+pub(super) struct Dialect {
+    pub uvs: bool,
+    pub colors: bool,
+    pub normals: bool,
+    pub homogeneous: bool,
+    pub dimensions: usize,
+    binary: bool,
 }
 
 /// Vertices of a file, with what its dialect adds.
@@ -34,6 +33,11 @@ struct Vertices {
 pub(crate) fn read(bytes: &[u8], notes: &mut Notes) -> Result<Model, Fault> {
     let mut cursor = Cursor::new(bytes, 0);
     let dialect = header(&mut cursor)?;
+    if dialect.binary {
+        let line =
+            bytes[cursor.offset()..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |n| cursor.offset() + n + 1);
+        return super::binary::read(bytes, line, dialect, notes);
+    }
     let (vertex_count, face_count) = counts(&mut cursor)?;
     let vertices = read_vertices(&mut cursor, vertex_count, dialect, notes)?;
 
@@ -128,8 +132,9 @@ fn header(cursor: &mut Cursor) -> Result<Dialect, Fault> {
     }
     *cursor = peek;
     let mut peek = cursor.clone();
-    if peek.token().is_some_and(|word| word.eq_ignore_ascii_case(b"binary")) {
-        return Err(Fault::text(start, "binary OFF is not supported; convert it to PLY or to text"));
+    dialect.binary = peek.token().is_some_and(|word| word.eq_ignore_ascii_case(b"binary"));
+    if dialect.binary && has_dimension {
+        return Err(Fault::text(start, "binary OFF of other than three dimensions is not supported"));
     }
     if has_dimension {
         cursor.seek_token();
@@ -257,71 +262,4 @@ fn integer(cursor: &mut Cursor, what: &str) -> Result<usize, Fault> {
     let token = cursor.token().ok_or_else(|| cursor.fault(format!("{what} is missing")))?;
     let text = std::str::from_utf8(token).unwrap_or_default();
     text.parse().map_err(|_| Fault::text(start, format!("{} is not {what}", show(token))))
-}
-
-/// The bytes of an OFF file, in the dialect that its attributes need. Positions print as the shortest decimals that
-/// read back bit for bit.
-pub(crate) fn encode(model: &Model) -> Encoded {
-    let mesh = &model.mesh;
-    let mut encoded = Encoded::default();
-    let uvs = model.uvs.as_ref().and_then(|m| per_vertex(mesh, m));
-    let normals = model.normals.as_ref().and_then(|m| per_vertex(mesh, m));
-    let colors = model.colors.as_ref().and_then(|m| per_vertex(mesh, m));
-    let face_colors = model.colors.as_ref().filter(|_| colors.is_none()).and_then(|m| per_face(mesh, m));
-    let lost = [
-        model.uvs.is_some() && uvs.is_none(),
-        model.normals.is_some() && normals.is_none(),
-        model.colors.is_some() && colors.is_none() && face_colors.is_none(),
-        model.groups.is_some(),
-        model.materials.is_some(),
-    ];
-    let lost = lost.iter().filter(|&&l| l).count();
-    encoded.notes.add("attributes dropped, since OFF holds one value per vertex and no names", lost, None);
-
-    let outline = Outline::of(model);
-    let prefix = |on: bool, letters: &'static str| if on { letters } else { "" };
-    encoded.body.push(
-        format!(
-            "{}{}{}OFF\n{} {} 0\n",
-            prefix(uvs.is_some(), "ST"),
-            prefix(colors.is_some(), "C"),
-            prefix(normals.is_some(), "N"),
-            mesh.positions.len(),
-            outline.len()
-        )
-        .into_bytes(),
-    );
-    encoded.body.extend(in_pieces(mesh.positions.len(), |i, out| {
-        let mut row = |values: &[f64]| {
-            for &x in values {
-                // No value: OFF has no way to leave one out.
-                push_f64(out, if x.is_nan() { 0.0 } else { x });
-                out.push(b' ');
-            }
-        };
-        row(&mesh.positions[i].to_array());
-        normals.iter().for_each(|m| row(&m[i].to_array()));
-        colors.iter().for_each(|m| row(&if m[i].is_none() { [1.0; 4] } else { m[i] }));
-        uvs.iter().for_each(|m| row(&m[i]));
-        out.pop();
-        out.push(b'\n');
-    }));
-    let vertices = mesh.faces.as_flattened();
-    encoded.body.extend(in_pieces(outline.len(), |i, out| {
-        let corners = outline.corners(i);
-        push_u64(out, corners.len() as u64);
-        for corner in corners.clone() {
-            out.push(b' ');
-            push_u64(out, u64::from(vertices[corner].0));
-        }
-        let face = corners.clone().next().map_or(0, |c| c / 3);
-        if let Some(color) = face_colors.as_ref().map(|m| m[face]).filter(|c| !c.is_none()) {
-            for x in color {
-                // A point marks the value as a fraction of 1.
-                out.extend_from_slice(format!(" {x:?}").as_bytes());
-            }
-        }
-        out.push(b'\n');
-    }));
-    encoded
 }
