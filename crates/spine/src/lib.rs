@@ -20,6 +20,7 @@
 //! | `patch.rs` | the two sides of a curve, flooded to α·r |
 //! | `contact.rs` | one ball at rest against both, by Newton on closest points |
 //! | `march.rs` | the ball along the whole curve |
+//! | `offset.rs`, `offset/` | the other solver: the crossing of the two offset patches |
 //! | `fair.rs` | feet smoothed into fair linkages |
 //! | `regress.rs` | folds of the sweep cut out and bridged |
 
@@ -27,6 +28,7 @@ mod contact;
 mod curve;
 mod fair;
 mod march;
+mod offset;
 mod patch;
 mod radius;
 mod regress;
@@ -34,6 +36,7 @@ mod regress;
 pub use contact::Contact;
 pub use curve::{BlendCurve, Convexity};
 pub use fair::{Sample, Softening};
+pub use offset::{OffsetKeep, OffsetParams};
 pub use patch::{Patch, Side};
 pub use radius::{Dip, RadiusField};
 
@@ -57,6 +60,19 @@ pub struct Params {
     pub fairness: f64,
     /// Where the linkages are smoothed more.
     pub softenings: Vec<Softening>,
+    /// What finds the spine.
+    pub solver: Solver,
+}
+
+/// Which solver finds the spine.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Solver {
+    /// Newton on closest points, step by step: exact on the mesh.
+    #[default]
+    Contact,
+    /// The crossing of the offset patches, as in [Liu2005] §3: off by the sagitta of the facets, with feet that do not
+    /// stick, and for patches that do not fold when moved by the radius.
+    Offset(OffsetParams),
 }
 
 impl Params {
@@ -68,6 +84,7 @@ impl Params {
             step: 0.2 * radius,
             fairness: 0.6,
             softenings: Vec::new(),
+            solver: Solver::Contact,
         }
     }
 }
@@ -79,7 +96,8 @@ pub struct Rail {
     pub samples: Vec<Sample>,
     /// Ridge or valley.
     pub convexity: Convexity,
-    /// Largest | distance from a traced centre to a patch − radius |, in model units; at most 1e-9 of the radius.
+    /// Largest | distance from a traced centre to a patch − radius |, in model units; at most 1e-9 of the radius from
+    /// [`Solver::Contact`].
     pub residual: f64,
     /// Reach of the base patches that was needed, as a multiple of the radius.
     pub alpha: f64,
@@ -146,6 +164,24 @@ pub enum Error {
         /// Length of the blend curve.
         curve: f64,
     },
+    /// The offset patches do not cross in a closed curve.
+    #[error(
+        "the patches moved by {radius} cross in no closed curve near {at}; try a smaller radius or the contact solver"
+    )]
+    NoLoop {
+        /// Where the longest open crossing ends, or else a point of the curve.
+        at: DVec3,
+        /// The radius there.
+        radius: f64,
+    },
+    /// The offset patches cross where they are folded, farther than can be bridged.
+    #[error("a patch moved by {radius} folds over at {at}, so no ball fits; try a smaller radius or the contact solver")]
+    Folded {
+        /// The middle of the fold.
+        at: DVec3,
+        /// The radius there.
+        radius: f64,
+    },
     /// The patch has coordinates that boxes cannot hold.
     #[error(transparent)]
     Query(#[from] mesh_query::Error),
@@ -159,7 +195,9 @@ impl Error {
             | Self::MixedConvexity { at, .. }
             | Self::NoStart { at, .. }
             | Self::Stuck { at, .. }
-            | Self::Astray { at, .. } => Some(at),
+            | Self::Astray { at, .. }
+            | Self::NoLoop { at, .. }
+            | Self::Folded { at, .. } => Some(at),
             Self::BadRadius { .. } | Self::Query(_) => None,
         }
     }
@@ -197,7 +235,14 @@ pub fn roll<M: Adjacency + Positions + Sync>(
                 Footing::Firm
             }
         };
-        let contacts = match march::trace(mesh, curve, convexity, &patches, radius, params.step, footing)? {
+        let traced = match &params.solver {
+            Solver::Contact => march::trace(mesh, curve, convexity, &patches, radius, params.step, footing)?,
+            Solver::Offset(offset) => {
+                let base = offset::Base { patches: &patches, barriers: &barriers, alpha };
+                offset::trace(mesh, curve, convexity, base, radius, params.step, offset)?
+            }
+        };
+        let contacts = match traced {
             march::Trace::Closed(contacts) => contacts,
             march::Trace::RanOff => {
                 alpha *= 1.6;
