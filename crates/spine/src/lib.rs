@@ -175,7 +175,9 @@ pub enum Error {
         radius: f64,
     },
     /// The offset patches cross where they are folded, farther than can be bridged.
-    #[error("a patch moved by {radius} folds over at {at}, so no ball fits; try a smaller radius or the contact solver")]
+    #[error(
+        "a patch moved by {radius} folds over at {at}, so no ball fits; try a smaller radius or the contact solver"
+    )]
     Folded {
         /// The middle of the fold.
         at: DVec3,

@@ -24,6 +24,12 @@ impl Joint {
         Self { mesh, curve }
     }
 
+    /// The contact solver's spine, its steps short enough for its chords to be as good as the mesh.
+    fn exact(&self, n: u32) -> Rail {
+        let params = Params { step: 0.4 / f64::from(n), ..Params::new(BALL) };
+        roll(&self.mesh, &self.curve, std::slice::from_ref(&self.curve), &params).unwrap()
+    }
+
     fn roll(&self, solver: Solver, radius: f64) -> Result<Rail, Error> {
         let params = Params { solver, ..Params::new(radius) };
         roll(&self.mesh, &self.curve, std::slice::from_ref(&self.curve), &params)
@@ -74,17 +80,14 @@ fn converges(name: &str, convexity: Convexity, radius: f64, height: f64, joint: 
         let levels = [16, 32, 64].map(|n| {
             let joint = joint(n);
             let rail = joint.offset(keep);
-            let exact = joint.roll(Solver::Contact, BALL).unwrap();
+            let exact = joint.exact(n);
             assert_eq!(rail.convexity, convexity);
             assert!(rail.samples.len() >= 40);
             assert!(winding(&rail) * curve_winding(&joint) > 0.0, "{name} {keep:?} {n} runs backwards");
             (off_circle(&rail, radius, height), apart(&rail, &exact), rail.residual, feet_off_plate(&rail, convexity))
         });
-        println!("{name} {keep:?}: {levels:?}");
-        for w in levels.windows(2) {
-            assert!(w[0].0 / w[1].0 > 3.0, "{name} {keep:?} circle {levels:?}");
-            assert!(w[0].1 / w[1].1 > 2.5, "{name} {keep:?} contact {levels:?}");
-        }
+        assert!(levels[0].0 / levels[2].0 > 12.0, "{name} {keep:?} circle {levels:?}");
+        assert!(levels[0].1 / levels[2].1 > 9.0, "{name} {keep:?} contact {levels:?}");
         let h = 1.0 / 16.0;
         for (k, level) in levels.iter().enumerate() {
             let h = h / f64::from(1u32 << k);
@@ -154,8 +157,7 @@ fn plate_from_sphere() {
             let joint = Joint::of(ball(n), plate(), Operation::Difference);
             off_circle(&joint.offset(keep), radius, BALL)
         });
-        println!("plate from sphere {keep:?}: {errors:?}");
-        assert!(errors[0] / errors[1] > 3.0 && errors[1] / errors[2] > 3.0, "{keep:?} {errors:?}");
+        assert!(errors[0] / errors[2] > 12.0, "{keep:?} {errors:?}");
     }
 }
 
@@ -169,13 +171,10 @@ fn two_icospheres() {
             let sphere = |z: f64, angle| shapes::posed(shapes::icosphere(1.0, level), turn(angle), z * DVec3::Z);
             let joint = Joint::of(sphere(-0.6, 0.2), sphere(0.6, 1.1), Operation::Union);
             let rail = joint.offset(keep);
-            let exact = joint.roll(Solver::Contact, BALL).unwrap();
+            let exact = joint.exact(4 << level);
             (off_circle(&rail, radius, 0.0), apart(&rail, &exact), rail.residual)
         });
-        println!("two icospheres {keep:?}: {errors:?}");
-        for w in errors.windows(2) {
-            assert!(w[0].0 / w[1].0 > 2.5 && w[0].1 / w[1].1 > 2.5, "{keep:?} {errors:?}");
-        }
+        assert!(errors[0].0 / errors[2].0 > 12.0 && errors[0].1 / errors[2].1 > 9.0, "{keep:?} {errors:?}");
     }
 }
 
@@ -213,16 +212,17 @@ fn too_large_a_radius_is_told_with_its_place() {
     }
 }
 
-/// A dip makes the ball smaller where it is: the offset follows it.
+/// A dip makes the ball smaller where it is: the offset follows it, as far as the vertices resolve it.
 #[test]
 fn a_dip_moves_the_spine() {
-    let joint = Joint::of(plate(), ball(32), Operation::Union);
-    let at = DVec3::new((1.0 + BALL).mul_add(1.0, 0.0), 0.0, BALL);
+    let fine = shapes::cuboid_grid(DVec3::new(6.0, 6.0, 2.0), [120, 120, 2]);
+    let joint = Joint::of(shapes::posed(fine, DQuat::IDENTITY, -DVec3::Z), ball(32), Operation::Union);
+    let at = DVec3::new(1.0 + BALL, 0.0, BALL);
     let mut params = Params { solver: Solver::Offset(OffsetParams::default()), ..Params::new(BALL) };
     params.radius.dips.push(spine::Dip { at, factor: 0.7, extent: 0.8 });
     let rail = roll(&joint.mesh, &joint.curve, std::slice::from_ref(&joint.curve), &params).unwrap();
     let lowest = rail.samples.iter().map(|s| s.radius).fold(f64::INFINITY, f64::min);
     assert!(lowest < 0.8 * BALL && lowest > 0.69 * BALL, "{lowest}");
-    assert!(rail.residual < 0.02 * BALL, "{}", rail.residual);
+    assert!(rail.residual < 0.01 * BALL, "{}", rail.residual);
     assert!(rail.samples.iter().all(|s| (s.center.z - s.radius).abs() < 0.01 * BALL));
 }
