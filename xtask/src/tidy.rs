@@ -14,7 +14,7 @@ const MANY_LINES: usize = 400;
 const ARROWS: &[(&str, &[&str])] = &[
     ("mesh-core", &[]),
     ("mesh-query", &["mesh-core", "obvhs"]),
-    ("mesh-io", &["mesh-core", "flate2", "gltf", "quick-xml", "serde_json", "tobj", "zip"]),
+    ("mesh-io", &["mesh-core", "flate2", "gltf", "quick-xml", "robust", "serde_json", "tobj", "zip"]),
     ("tri-intersect", &["mesh-core", "mesh-query", "robust", "spade"]),
     ("profile-nurbs", &["nalgebra"]),
     ("spine", &["mesh-core", "mesh-query", "tri-intersect"]),
@@ -148,7 +148,7 @@ fn machine_paths(name: &str, text: &str, faults: &mut Vec<String>) {
     }
 }
 
-/// Every `[Name2005]` must be an entry of the bibliography.
+/// Every key such as `[Liu2005]` must be an entry of the bibliography.
 fn citations(name: &str, text: &str, bibliography: &str, faults: &mut Vec<String>) {
     for (i, line) in text.lines().enumerate() {
         for key in line.split('[').skip(1).filter_map(|rest| rest.split_once(']')).map(|(key, _)| key) {
