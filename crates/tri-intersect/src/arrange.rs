@@ -113,7 +113,9 @@ pub(crate) fn crossings(parts: &[Part; 2], pairs: &[[FaceId; 2]], watch: &Watch)
         .par_chunks(BATCH)
         .map(|batch| {
             let mut found = Crossings::default();
-            batch.iter().for_each(|&[f, g]| cross_faces(parts, [f.0, g.0], &mut found));
+            for &[f, g] in batch {
+                cross_faces(parts, [f.0, g.0], &mut found);
+            }
             found
         })
         .collect();

@@ -65,7 +65,7 @@ impl Flood<'_> {
         let mesh = self.parts[self.which].mesh;
         let mut faces = vec![Class::Unknown as u8; mesh.face_count()];
         pieces.faces.iter().for_each(|&f| faces[f as usize] = CUT);
-        let edges = self.edges(pieces);
+        let edges = edges(pieces);
         let mut stack: Vec<Item> = self.seeds(pieces)?;
         self.spread(pieces, &mut faces, &edges, &mut stack)?;
         for f in 0..faces.len() {
@@ -77,23 +77,6 @@ impl Flood<'_> {
             }
         }
         Ok(faces)
-    }
-
-    /// The sides of all pieces that are not on the seam, grouped by their nodes.
-    fn edges(&self, pieces: &Pieces) -> Vec<([u32; 2], u32)> {
-        let mut edges: Vec<([u32; 2], u32)> = pieces
-            .triangles
-            .par_iter()
-            .enumerate()
-            .flat_map_iter(|(i, t)| {
-                (0..3).map(move |k| {
-                    let (u, v) = (t[k], t[(k + 1) % 3]);
-                    ([u.min(v), u.max(v)], i as u32)
-                })
-            })
-            .collect();
-        edges.par_sort_unstable();
-        edges
     }
 
     /// Classes that the seam itself decides.
@@ -145,8 +128,7 @@ impl Flood<'_> {
         }
         let class = |inside: bool| Some(if inside { Class::Inside } else { Class::Outside });
         match met {
-            [None, _] => None,
-            [Some((_, 0)), None] => None,
+            [None, _] | [Some((_, 0)), None] => None,
             [Some((_, s)), None] => class(s < 0),
             [Some((f, s)), Some((g, t))] => {
                 // Along an edge of the other part: its two faces form a wedge.
@@ -295,6 +277,23 @@ impl Flood<'_> {
         }
         Class::Outside
     }
+}
+
+/// The sides of all pieces, grouped by their nodes.
+fn edges(pieces: &Pieces) -> Vec<([u32; 2], u32)> {
+    let mut edges: Vec<([u32; 2], u32)> = pieces
+        .triangles
+        .par_iter()
+        .enumerate()
+        .flat_map_iter(|(i, t)| {
+            (0..3).map(move |k| {
+                let (u, v) = (t[k], t[(k + 1) % 3]);
+                ([u.min(v), u.max(v)], i as u32)
+            })
+        })
+        .collect();
+    edges.par_sort_unstable();
+    edges
 }
 
 /// What the flood has reached.

@@ -244,9 +244,13 @@ fn cut_face(
             last = node;
         };
         if edge.0 == h.0 {
-            along.iter().for_each(|e| reach(e.1));
+            for e in along {
+                reach(e.1);
+            }
         } else {
-            along.iter().rev().for_each(|e| reach(e.1));
+            for e in along.iter().rev() {
+                reach(e.1);
+            }
         }
         reach(to);
     }

@@ -1,8 +1,47 @@
-//! Exact-predicate triangle-mesh intersection, cutting and booleans
+//! Where triangle meshes meet: exact intersection tests, curves, cuts and booleans.
+//!
+//! ```
+//! use glam::DVec3;
+//! use mesh_core::{Connected, Watch, shapes};
+//! use tri_intersect::{Operation, Params, boolean};
+//!
+//! let cube = Connected::new(shapes::cuboid(DVec3::splat(2.0)))?;
+//! let ball = Connected::new(shapes::icosphere(1.2, 3))?;
+//! let both = boolean(&cube, &ball, Operation::Union, &Params::default(), &Watch::default())?;
+//! assert_eq!(both.seams.len(), 6); // the ball looks out of every side of the cube
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Whether and how two triangles cross is decided by signs of exact predicates [Shewchuk1997] on the input points, with
+//! explicit cases for zeros. A point of intersection is *named* by what carries it (an edge of one mesh and a face of the
+//! other, or two edges, or a vertex and a face …), so neighbouring triangles agree on it without comparing coordinates.
+//! Its place is computed in 106 bits and rounded once; its order along an edge is compared exactly. Crossed triangles are
+//! retriangulated with exact predicates on the rounded places, so none can fold; where rounding has put two points or a
+//! point and an edge in each other's way, they are snapped together, by no more than 2⁻⁴⁴ of the largest coordinate.
+//! Inside and outside are decided exactly at the seam and flooded from there. Every result is checked before it is
+//! returned.
+//!
+//! **Zeros.** Coplanar, touching and coinciding parts give the regularised result: faces that coincide are kept once if
+//! they look the same way, and vanish if they look opposite ways. Where the result would pinch to an edge or a vertex,
+//! [`Contact`] says what happens. Planes that *almost* coincide, say to one part in 10¹⁵ after a rotation, cross
+//! in ways that doubles cannot always write down; that is refused with [`Error::Rounding`], [`Error::Tangled`] or
+//! [`Error::SelfIntersecting`] and the place.
 //!
 //! | file | holds |
 //! |---|---|
+//! | `boolean.rs` | union, difference, intersection: the stages in order |
+//! | `fold.rs` | one operation over many parts |
+//! | `curves.rs` | intersection curves of two surfaces, open or closed |
+//! | `self_test.rs`, `contact.rs` | the self-intersection report; whether two triangles meet |
 //! | `embed.rs`, `embed/` | curves made part of a mesh, and the parts into which they divide it |
+//! | `predicate.rs`, `exact.rs` | signs of orientation; numbers beyond 64 bits |
+//! | `near.rs` | the faces that can meet at all |
+//! | `crossing.rs` | how one triangle meets another, in names |
+//! | `arrange.rs` | all crossings of two meshes: named points, placed and in order |
+//! | `triangulate.rs`, `cut.rs` | one cut face; all of them, and the snapping |
+//! | `classify.rs`, `inside.rs` | sides of the seam, the flood, and components that no seam passes |
+//! | `assemble.rs`, `check.rs` | the result with its origins, and its exact check |
+//! | `tidy.rs`, `pinch.rs`, `seam.rs` | short edges, contacts, seam curves |
 
 mod arrange;
 mod assemble;

@@ -48,9 +48,9 @@ fn follow(edges: &[[VertexId; 2]], used: &mut [bool], first: usize, seams: &mut 
         let v = edges[i][1];
         if let Some(&start) = place.get(&v) {
             let cycle: Vec<VertexId> = path.drain(start..).collect();
-            cycle.iter().for_each(|u| {
+            for u in &cycle {
                 place.remove(u);
-            });
+            }
             seams.push(Seam { vertices: cycle, closed: true });
         }
         place.insert(v, path.len());

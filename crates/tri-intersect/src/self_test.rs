@@ -40,7 +40,9 @@ pub fn self_intersections_among<M: Faces + Positions + Sync>(
     let points = finite_points(mesh)?;
     let Ok(tree) = TriBvh::build(mesh) else { return Ok(vec![]) };
     let mut listed = vec![false; mesh.face_count()];
-    faces.iter().for_each(|f| listed[f.index()] = true);
+    for f in faces {
+        listed[f.index()] = true;
+    }
     let mut unique: Vec<FaceId> = faces.to_vec();
     unique.sort_unstable();
     unique.dedup();

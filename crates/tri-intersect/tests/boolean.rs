@@ -60,7 +60,7 @@ fn check_parts(parts: &[&TriMesh], result: &Boolean) {
                 assert!((u * x + v * y + w * z).distance(p) <= 1e-14 * size);
             }
             VertexOrigin::New { stage: "contact" } => assert!(touches),
-            o => panic!("{o:?}"),
+            o @ VertexOrigin::New { .. } => panic!("{o:?}"),
         }
     }
     let mut sides = HashMap::new();
@@ -72,12 +72,11 @@ fn check_parts(parts: &[&TriMesh], result: &Boolean) {
         (0..3).for_each(|k| assert!(sides.insert((c[k], c[(k + 1) % 3]), part).is_none()));
         // Faces that claim to be whole have the corners they had, to the bit; pieces lie in the plane of their face.
         let triangle = parts[part as usize].triangle(face);
-        match result.origins.faces[f] {
-            FaceOrigin::Input { .. } => assert!(result.mesh.triangle(f).iter().all(|p| triangle.contains(p))),
-            _ => {
-                let n = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalize();
-                assert!(result.mesh.triangle(f).iter().all(|p| (*p - triangle[0]).dot(n).abs() <= 1e-14 * size));
-            }
+        if let FaceOrigin::Input { .. } = result.origins.faces[f] {
+            assert!(result.mesh.triangle(f).iter().all(|p| triangle.contains(p)));
+        } else {
+            let n = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalize();
+            assert!(result.mesh.triangle(f).iter().all(|p| (*p - triangle[0]).dot(n).abs() <= 1e-14 * size));
         }
     }
     // Along a seam the lower part is on the left and another one on the right.
