@@ -18,7 +18,7 @@
 //! | `format.rs`, `error.rs`, `notes.rs` | names of formats; what went wrong, or was changed, and where |
 //! | `read.rs`, `write.rs` | from files to models and back; files appear whole or not at all |
 //! | `folder.rs` | references to side files that are safe to follow |
-//! | `obj/`, `ply/`, `off.rs`, `stl.rs`, `gltf/`, `threemf/` | one format each, reader and writer |
+//! | `obj/`, `ply/`, `off/`, `stl.rs`, `gltf/`, `threemf/` | one format each, reader and writer |
 //! | `text.rs`, `number.rs` | tokens of text files; numbers as text, bit for bit |
 //! | `soup.rs`, `triangulate.rs` | polygons to triangles |
 //! | `weld.rs` | merging vertices at the same place |

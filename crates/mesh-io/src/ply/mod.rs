@@ -1,5 +1,6 @@
 //! PLY, text and binary, with any elements and properties.
 
+mod body;
 mod header;
 mod read;
 mod write;
