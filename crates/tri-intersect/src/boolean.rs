@@ -238,10 +238,9 @@ pub fn boolean(
             clock.contact(params, result.mesh.positions[v.index()], copies.len())?;
         }
         // Snapping can pinch in ways that no predicate foresees.
-        if snaps.count > 0
-            && let Err(e) = Connected::new(&result.mesh)
-        {
-            return Err(Error::Rounding { at: e.place.unwrap_or(DVec3::ZERO) });
+        if let Err(e) = Connected::new(&result.mesh) {
+            let at = e.place.unwrap_or(DVec3::ZERO);
+            return Err(if snaps.count > 0 { Error::Rounding { at } } else { Error::Contact { at } });
         }
         clock.lap("contacts");
     }
