@@ -13,7 +13,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What [`write`] put on disk.
+/// What [`write()`] put on disk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
     /// Every file written, the named one last.
@@ -36,10 +36,10 @@ pub fn write(model: &Model, path: &Path) -> Result<Written, Error> {
     write_as(model, path, Format::from_path(path)?)
 }
 
-/// Writes a mesh file in a given format, whatever its extension. See [`write`].
+/// Writes a mesh file in a given format, whatever its extension. See [`write()`].
 ///
 /// # Errors
-/// As for [`write`].
+/// As for [`write()`].
 pub fn write_as(model: &Model, path: &Path, format: Format) -> Result<Written, Error> {
     // A link is written through, not replaced.
     let real = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
@@ -62,7 +62,7 @@ pub fn write_as(model: &Model, path: &Path, format: Format) -> Result<Written, E
     Ok(Written { files, bytes, notes: encoded.notes.resolve(&[]) })
 }
 
-/// The file that [`write`] would make, as bytes, without side files: OBJ names materials that no library describes,
+/// The file that [`write()`] would make, as bytes, without side files: OBJ names materials that no library describes,
 /// glTF holds its buffer inside.
 ///
 /// # Errors
