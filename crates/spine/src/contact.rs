@@ -28,8 +28,13 @@ impl Contact {
         patches: &[Patch; 2],
         radius: &RadiusField,
         center: DVec3,
+        known: Option<[DVec3; 2]>,
     ) -> Option<(Self, DVec3)> {
-        let feet = [patches[0].closest(mesh, center)?, patches[1].closest(mesh, center)?];
+        let foot = |side: usize| match known {
+            Some(points) => patches[side].closest_near(mesh, center, points[side]),
+            None => patches[side].closest(mesh, center),
+        };
+        let feet = [foot(0)?, foot(1)?];
         let (r, slope) = radius.at(center);
         let residual = (feet[0].distance - r).abs().max((feet[1].distance - r).abs());
         residual.is_finite().then_some((Self { center, radius: r, feet, residual }, slope))
@@ -38,6 +43,8 @@ impl Contact {
     /// Seats the ball: damped Newton on { distance to left = r, distance to right = r }, each step the shortest that
     /// solves the linearised pair, so that the centre stays nearest to the guess.
     ///
+    /// `known` are points of the patches near which the feet are expected; they only save time.
+    ///
     /// `None` where it does not converge: the patches face each other too squarely for a ball to wedge between them,
     /// or no ball fits nearby.
     pub fn seat<M: Adjacency + Positions>(
@@ -45,21 +52,23 @@ impl Contact {
         patches: &[Patch; 2],
         radius: &RadiusField,
         guess: DVec3,
+        known: Option<[DVec3; 2]>,
     ) -> Option<Self> {
-        let (mut here, mut slope) = Self::at(mesh, patches, radius, guess)?;
+        let (mut here, mut slope) = Self::at(mesh, patches, radius, guess, known)?;
         for _ in 0..40 {
             if here.residual <= SEATED * here.radius {
                 return Some(here);
             }
             let mut step = here.newton_step(slope)?.clamp_length_max(0.5 * here.radius);
-            let mut next = Self::at(mesh, patches, radius, here.center + step)?;
+            let known = Some(here.feet.map(|f| f.point));
+            let mut next = Self::at(mesh, patches, radius, here.center + step, known)?;
             // A foot that jumps to another facet can make a full step worse; half steps then find the new facet.
             for _ in 0..6 {
                 if next.0.residual < here.residual {
                     break;
                 }
                 step *= 0.5;
-                next = Self::at(mesh, patches, radius, here.center + step)?;
+                next = Self::at(mesh, patches, radius, here.center + step, known)?;
             }
             (here, slope) = next;
         }
@@ -72,8 +81,9 @@ impl Contact {
         patches: &[Patch; 2],
         radius: &RadiusField,
         center: DVec3,
+        known: [DVec3; 2],
     ) -> Option<Self> {
-        Self::at(mesh, patches, radius, center).map(|(contact, _)| contact)
+        Self::at(mesh, patches, radius, center, Some(known)).map(|(contact, _)| contact)
     }
 
     /// Unit directions from the feet to the centre.

@@ -11,7 +11,7 @@ use crate::curve::{BlendCurve, Convexity, face_normal};
 use crate::patch::Patch;
 use crate::radius::RadiusField;
 use glam::DVec3;
-use mesh_core::{Adjacency, Positions};
+use mesh_core::{Adjacency, HalfedgeId, Positions};
 
 /// How a trace ended well.
 pub(crate) enum Trace {
@@ -108,29 +108,35 @@ fn stride_from<M: Adjacency + Positions>(
     stride: &mut f64,
     shortest: f64,
 ) -> Option<Contact> {
+    let known = here.feet.map(|f| f.point);
     while *stride > shortest {
+        let reached = |heading: DVec3, guess: DVec3| {
+            let next = Contact::seat(mesh, patches, radius, guess, Some(known))?;
+            let chord = next.center - here.center;
+            (chord.dot(heading) > 0.3 * *stride && chord.length() < 1.8 * *stride && next.tangent().is_some())
+                .then_some(next)
+        };
         let ahead = here.center + *stride * direction;
-        let plain = Some((direction, ahead));
         // Where a third contact blocks the way, the point ahead is already nearer to it: its tangent leads round the
         // corner. The guess is put on the third contact's side, so that its branch is found and not the old one, from
         // which a spine that turns back in a crevice hardly differs.
-        let round_the_corner = Contact::probe(mesh, patches, radius, ahead).and_then(|c| {
-            let heading = sign * c.tangent()?;
-            let jumped = |s: &usize| c.feet[*s].point.distance(here.feet[*s].point) > 2.0 * *stride;
-            let lean: DVec3 = (0..2).filter(jumped).map(|s| c.normals()[s]).sum();
-            Some((heading, here.center + *stride * (heading - 0.4 * lean)))
-        });
-        for (heading, guess) in [plain, round_the_corner].into_iter().flatten() {
-            let Some(next) = Contact::seat(mesh, patches, radius, guess) else { continue };
-            let chord = next.center - here.center;
-            if chord.dot(heading) > 0.3 * *stride && chord.length() < 1.8 * *stride && next.tangent().is_some() {
-                return Some(next);
-            }
+        let round_the_corner = || {
+            let blocked = Contact::probe(mesh, patches, radius, ahead, known)?;
+            let heading = sign * blocked.tangent()?;
+            let jumped = |s: &usize| blocked.feet[*s].point.distance(known[*s]) > 2.0 * *stride;
+            let lean: DVec3 = (0..2).filter(jumped).map(|s| blocked.normals()[s]).sum();
+            reached(heading, here.center + *stride * (heading - 0.4 * lean))
+        };
+        if let Some(next) = reached(direction, ahead).or_else(round_the_corner) {
+            return Some(next);
         }
         *stride *= 0.5;
     }
     None
 }
+
+/// In how many places along a curve a first ball is tried.
+const STRETCHES: usize = 96;
 
 /// Seats the first ball where the wedge is plainest, and tells whether left × right runs along the curve or against it.
 fn first_contact<M: Adjacency + Positions>(
@@ -144,10 +150,12 @@ fn first_contact<M: Adjacency + Positions>(
         Convexity::Concave => 1.0,
         Convexity::Convex => -1.0,
     };
-    // Each edge proposes the centre that is exact between the planes of its two faces.
+    // The longest edge of each stretch proposes the centre that is exact between the planes of its two faces.
+    let length = |h: &HalfedgeId| mesh.position(mesh.tail(*h)).distance(mesh.position(mesh.head(*h)));
     let mut guesses: Vec<(f64, DVec3, DVec3)> = Vec::new();
-    for &h in &curve.halfedges {
-        let Some(t) = mesh.twin(h) else { continue };
+    for stretch in curve.halfedges.chunks(curve.halfedges.len().div_ceil(STRETCHES).max(1)) {
+        let longest = stretch.iter().copied().max_by(|g, h| length(g).total_cmp(&length(h)));
+        let Some((h, t)) = longest.and_then(|h| Some((h, mesh.twin(h)?))) else { continue };
         let (a, b) = (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
         let (left, right) = (face_normal(mesh, h), face_normal(mesh, t));
         let (middle, spread) = (0.5 * (a + b), 1.0 + left.dot(right));
@@ -163,8 +171,8 @@ fn first_contact<M: Adjacency + Positions>(
         guesses.push((miss, center, (b - a).normalize_or_zero()));
     }
     guesses.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for &(_, center, along) in guesses.iter().take(48) {
-        let Some(contact) = Contact::seat(mesh, patches, radius, center) else { continue };
+    for &(_, center, along) in &guesses {
+        let Some(contact) = Contact::seat(mesh, patches, radius, center, None) else { continue };
         let Some(tangent) = contact.tangent() else { continue };
         let slope = tangent.dot(along);
         let near = contact.center.distance(center) < contact.radius;

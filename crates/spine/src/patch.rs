@@ -2,9 +2,9 @@
 
 use crate::curve::BlendCurve;
 use glam::DVec3;
-use mesh_core::{Adjacency, EdgeId, FaceId, HalfedgeId, Positions};
+use mesh_core::{Adjacency, EdgeId, FaceId, FaceMap, HalfedgeId, Positions};
 use mesh_query::{ClosestPoint, TriBvh, closest_point_on_triangle};
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::{HashSet, VecDeque};
 
 /// One side of a blend curve.
 pub struct Patch {
@@ -39,7 +39,9 @@ impl Patch {
         spacing: f64,
     ) -> Result<Self, mesh_query::Error> {
         let marks = Marks::along(mesh, curve, spacing);
-        let mut nearest: HashMap<FaceId, usize> = HashMap::new();
+        // Mark each face was reached by; the whole array costs less than hashing the patch.
+        let mut nearest = FaceMap::filled(mesh.face_count(), u32::MAX);
+        let mut faces = Vec::new();
         let mut queue = VecDeque::new();
         for (i, &h) in curve.halfedges.iter().enumerate() {
             let own = match side {
@@ -47,8 +49,10 @@ impl Patch {
                 Side::Right => mesh.twin(h),
             };
             if let Some(h) = own
-                && nearest.insert(h.face(), marks.first_of_edge[i]).is_none()
+                && nearest[h.face()] == u32::MAX
             {
+                nearest[h.face()] = marks.first_of_edge[i];
+                faces.push(h.face());
                 queue.push_back(h.face());
             }
         }
@@ -56,18 +60,19 @@ impl Patch {
             for corner in 0..3 {
                 let h = HalfedgeId::new(face, corner);
                 let Some(next) = mesh.twin(h).map(HalfedgeId::face) else { continue };
-                if barriers.contains(&mesh.edge(h)) || nearest.contains_key(&next) {
+                if nearest[next] != u32::MAX || barriers.contains(&mesh.edge(h)) {
                     continue;
                 }
                 let triangle = mesh.corners(next).map(|v| mesh.position(v));
-                let (mark, distance) = marks.descend(nearest[&face], triangle);
-                if distance <= reach {
-                    nearest.insert(next, mark);
+                let mark = marks.descend(nearest[face], (triangle[0] + triangle[1] + triangle[2]) / 3.0);
+                let point = marks.points[mark as usize];
+                if closest_point_on_triangle(point, triangle).0.distance_squared(point) <= reach * reach {
+                    nearest[next] = mark;
+                    faces.push(next);
                     queue.push_back(next);
                 }
             }
         }
-        let mut faces: Vec<FaceId> = nearest.into_keys().collect();
         faces.sort_unstable();
         Ok(Self { bvh: TriBvh::build_subset(mesh, &faces)?, faces })
     }
@@ -76,12 +81,18 @@ impl Patch {
     pub fn closest<M: Adjacency + Positions>(&self, mesh: &M, p: DVec3) -> Option<ClosestPoint> {
         self.bvh.closest_point(mesh, p)
     }
+
+    /// The closest point of the patch, found the sooner the nearer `known`, a point of the patch, is to it.
+    pub fn closest_near<M: Adjacency + Positions>(&self, mesh: &M, p: DVec3, known: DVec3) -> Option<ClosestPoint> {
+        // A little slack, so that the rounding of the bound does not lose the known point itself.
+        self.bvh.closest_point_within(mesh, p, (1.0 + 1e-9) * p.distance(known)).or_else(|| self.closest(mesh, p))
+    }
 }
 
 /// Points along a curve at most `spacing` apart.
 struct Marks {
     points: Vec<DVec3>,
-    first_of_edge: Vec<usize>,
+    first_of_edge: Vec<u32>,
 }
 
 impl Marks {
@@ -89,7 +100,7 @@ impl Marks {
         let (mut points, mut first_of_edge) = (Vec::new(), Vec::new());
         for &h in &curve.halfedges {
             let (a, b) = (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
-            first_of_edge.push(points.len());
+            first_of_edge.push(points.len() as u32);
             // The seam of a boolean is full of edges far shorter than the spacing; one mark for each of them is enough.
             let pieces = (a.distance(b) / spacing).ceil().clamp(1.0, 4096.0) as u32;
             points.extend((0..pieces).map(|k| a.lerp(b, f64::from(k) / f64::from(pieces))));
@@ -97,11 +108,11 @@ impl Marks {
         Self { points, first_of_edge }
     }
 
-    /// Walks from mark `start` to a locally nearest mark of the triangle, looking a few marks ahead each way.
-    fn descend(&self, start: usize, triangle: [DVec3; 3]) -> (usize, f64) {
+    /// Walks from mark `start` to a locally nearest mark of a point, looking a few marks ahead each way.
+    fn descend(&self, start: u32, p: DVec3) -> u32 {
         let n = self.points.len();
-        let distance = |i: usize| closest_point_on_triangle(self.points[i], triangle).0.distance(self.points[i]);
-        let mut best = (start, distance(start));
+        let distance = |i: usize| self.points[i].distance_squared(p);
+        let mut best = (start as usize, distance(start as usize));
         for _ in 0..n {
             let here = best.0;
             for step in [1, 2, 4, 8] {
@@ -116,6 +127,6 @@ impl Marks {
                 break;
             }
         }
-        best
+        best.0 as u32
     }
 }
