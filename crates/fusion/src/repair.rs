@@ -81,7 +81,9 @@ fn weld(model: &Model, tolerance: f64) -> (Model, Origins) {
 /// How many faces run the other way round, where the faces are the same ones.
 fn part_turned(before: &TriMesh, after: &TriMesh) -> usize {
     let same_count = before.faces.len() == after.faces.len();
-    let turned = |(a, b): &(&[VertexId; 3], &[VertexId; 3])| (0..3).any(|k| [a[0], a[2], a[1]] == [b[k], b[(k + 1) % 3], b[(k + 2) % 3]]);
+    let turned = |(a, b): &(&[VertexId; 3], &[VertexId; 3])| {
+        (0..3).any(|k| [a[0], a[2], a[1]] == [b[k], b[(k + 1) % 3], b[(k + 2) % 3]])
+    };
     before.faces.iter().zip(&after.faces).filter(turned).count() * usize::from(same_count)
 }
 

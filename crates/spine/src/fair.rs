@@ -7,6 +7,7 @@
 
 use crate::contact::Contact;
 use crate::patch::Patch;
+use crate::radius::RadiusField;
 use glam::DVec3;
 use mesh_core::{Adjacency, Positions};
 use mesh_query::ClosestPoint;
@@ -34,24 +35,45 @@ pub struct Sample {
     pub feet: [ClosestPoint; 2],
 }
 
-/// Fills jumps, smooths, projects. The kernel's standard deviation is `fairness` facet lengths on each side, at most
-/// half the radius; `gap` is the largest distance left between neighbouring feet before smoothing.
+impl From<Contact> for Sample {
+    fn from(ball: Contact) -> Self {
+        Self { center: ball.center, radius: ball.radius, feet: ball.feet }
+    }
+}
+
+impl Sample {
+    /// How far whichever of centre and feet moves most is from where it is in `next`.
+    fn advance(&self, next: &Self) -> f64 {
+        (0..2)
+            .map(|s| self.feet[s].point.distance(next.feet[s].point))
+            .fold(self.center.distance(next.center), f64::max)
+    }
+}
+
+/// How [`fair`] works.
+pub(crate) struct Fairing<'a> {
+    /// Standard deviation of the kernel in facet lengths, at most half the radius.
+    pub fairness: f64,
+    /// Largest distance left between neighbouring feet, in model units.
+    pub gap: f64,
+    /// Where the kernel is wider.
+    pub softenings: &'a [Softening],
+}
+
+/// Fills jumps, smooths, projects. Also gives the largest residual of the balls seated on the way.
 pub(crate) fn fair<M: Adjacency + Positions + Sync>(
     mesh: &M,
     patches: &[Patch; 2],
+    radius: &RadiusField,
     contacts: &[Contact],
-    fairness: f64,
-    gap: f64,
-    softenings: &[Softening],
-) -> Vec<Sample> {
-    let raw: Vec<Sample> =
-        contacts.iter().map(|c| Sample { center: c.center, radius: c.radius, feet: c.feet }).collect();
-    let raw = fill_jumps(mesh, patches, &raw, gap);
+    Fairing { fairness, gap, softenings }: Fairing<'_>,
+) -> (Vec<Sample>, f64) {
+    let (raw, residual) = fill_jumps(mesh, patches, radius, contacts, gap);
     let (metric, total) = arc_lengths(&raw);
     let points: [Vec<DVec3>; 2] = [0, 1].map(|side| raw.iter().map(|s| s.feet[side].point).collect());
     let centers: Vec<DVec3> = raw.iter().map(|s| s.center).collect();
     let sigmas = [0, 1].map(|side| fairness * facet_length(mesh, &raw, side));
-    (0..raw.len())
+    let fair = (0..raw.len())
         .into_par_iter()
         .map(|i| {
             let mut sample = raw[i];
@@ -74,7 +96,8 @@ pub(crate) fn fair<M: Adjacency + Positions + Sync>(
             }
             sample
         })
-        .collect()
+        .collect();
+    (fair, residual)
 }
 
 /// Mean length of the linkage between turns of the surface under it: the scale on which facets disturb the feet.
@@ -96,36 +119,74 @@ fn facet_length<M: Adjacency + Positions>(mesh: &M, samples: &[Sample], side: us
     if turns == 0 { 0.0 } else { length / f64::from(turns) }
 }
 
-/// Where a foot jumps or a sample is missing, lets the feet walk: extra samples between those of the ends.
-pub(crate) fn fill_jumps<M: Adjacency + Positions>(
+/// Fills the stretches where a foot moves farther than `gap` from one ball to the next. Where it only moves fast, balls
+/// are seated in between; where it jumps, the ball stays and its foot walks over.
+fn fill_jumps<M: Adjacency + Positions>(
+    mesh: &M,
+    patches: &[Patch; 2],
+    radius: &RadiusField,
+    contacts: &[Contact],
+    gap: f64,
+) -> (Vec<Sample>, f64) {
+    let mut residual = 0.0f64;
+    let between = |here: &Sample, next: &Sample, t: f64| {
+        let walked = walk(mesh, patches, here, next, t)?;
+        let known = walked.feet.map(|f| f.point);
+        let seated = Contact::seat(mesh, patches, radius, walked.center, Some(known)).filter(|ball| {
+            ball.center.distance(walked.center) < 0.25 * gap
+                && (0..2).all(|s| ball.feet[s].point.distance(known[s]) < 0.25 * gap)
+        });
+        if let Some(ball) = seated {
+            residual = residual.max(ball.residual);
+        }
+        Some(seated.map_or(walked, Sample::from))
+    };
+    let samples: Vec<Sample> = contacts.iter().copied().map(Sample::from).collect();
+    let filled = subdivide(&samples, gap, between);
+    (filled, residual)
+}
+
+/// Fills gaps with samples between their ends, feet walking over the patches.
+pub(crate) fn fill_gaps<M: Adjacency + Positions>(
     mesh: &M,
     patches: &[Patch; 2],
     samples: &[Sample],
     gap: f64,
 ) -> Vec<Sample> {
+    subdivide(samples, gap, |here, next, t| walk(mesh, patches, here, next, t))
+}
+
+/// Puts what `between` makes into every stretch longer than `gap`.
+fn subdivide(
+    samples: &[Sample],
+    gap: f64,
+    mut between: impl FnMut(&Sample, &Sample, f64) -> Option<Sample>,
+) -> Vec<Sample> {
     let mut filled = Vec::with_capacity(samples.len());
     for (i, here) in samples.iter().enumerate() {
         let next = &samples[(i + 1) % samples.len()];
         filled.push(*here);
-        let jump = (0..2)
-            .map(|s| here.feet[s].point.distance(next.feet[s].point))
-            .fold(here.center.distance(next.center), f64::max);
         // A jump is never longer than a few diameters, so the count is bounded.
-        let pieces = (jump / gap).ceil().clamp(1.0, 256.0) as u32;
-        for k in 1..pieces {
-            let t = f64::from(k) / f64::from(pieces);
-            let foot = |s: usize| patches[s].closest(mesh, here.feet[s].point.lerp(next.feet[s].point, t));
-            if let (Some(left), Some(right)) = (foot(0), foot(1)) {
-                let center = here.center.lerp(next.center, t);
-                filled.push(Sample {
-                    center,
-                    radius: here.radius + t * (next.radius - here.radius),
-                    feet: [left, right],
-                });
-            }
-        }
+        let pieces = (here.advance(next) / gap).ceil().clamp(1.0, 256.0) as u32;
+        filled.extend((1..pieces).filter_map(|k| between(here, next, f64::from(k) / f64::from(pieces))));
     }
     filled
+}
+
+/// The ball between two, its feet on the patches next to the straight line between theirs.
+fn walk<M: Adjacency + Positions>(
+    mesh: &M,
+    patches: &[Patch; 2],
+    here: &Sample,
+    next: &Sample,
+    t: f64,
+) -> Option<Sample> {
+    let foot = |s: usize| patches[s].closest(mesh, here.feet[s].point.lerp(next.feet[s].point, t));
+    Some(Sample {
+        center: here.center.lerp(next.center, t),
+        radius: here.radius + t * (next.radius - here.radius),
+        feet: [foot(0)?, foot(1)?],
+    })
 }
 
 /// Arc length at each sample and in all, measured on whichever of centre and feet moves most.

@@ -252,10 +252,11 @@ pub fn roll<M: Adjacency + Positions + Sync>(
             }
         };
         let gap = 1.5 * params.step;
-        let samples = fair::fair(mesh, &patches, &contacts, params.fairness, gap, &params.softenings);
+        let fairing = fair::Fairing { fairness: params.fairness, gap, softenings: &params.softenings };
+        let (samples, filled) = fair::fair(mesh, &patches, radius, &contacts, fairing);
         let samples = regress::regress(&samples, convexity, 3.0 * radius.base);
-        let samples = fair::fill_jumps(mesh, &patches, &samples, gap);
-        let residual = contacts.iter().map(|c| c.residual).fold(0.0, f64::max);
+        let samples = fair::fill_gaps(mesh, &patches, &samples, gap);
+        let residual = contacts.iter().map(|c| c.residual).fold(filled, f64::max);
         return Ok(Rail {
             samples,
             convexity,

@@ -55,24 +55,24 @@ pub(crate) fn sweep(
             Column { first_inner, inner: inner as u32 }
         })
         .collect();
-    let place = |points: &[DVec3], v: VertexId| {
-        if v.0 >= first_new { points[(v.0 - first_new) as usize] } else { position(v) }
-    };
     let n = columns.len();
     for i in 0..n {
-        let cell = Cell { columns: [&columns[i], &columns[(i + 1) % n]], spans: [0, 1].map(|s| linkages[s].span(i)) };
-        let before = strip.faces.len();
-        cell.triangulate(&strip.points, &place, &mut strip.faces);
         let (here, next) = (&rail.samples[i], &rail.samples[(i + 1) % n]);
+        let front = Front { center: here.center.midpoint(next.center), convexity: rail.convexity };
+        let cell = Cell {
+            columns: [&columns[i], &columns[(i + 1) % n]],
+            spans: [0, 1].map(|s| linkages[s].span(i)),
+            at: |v: VertexId| {
+                if v.0 >= first_new { strip.points[(v.0 - first_new) as usize] } else { position(v) }
+            },
+            front,
+        };
+        let before = strip.faces.len();
+        cell.triangulate(&mut strip.faces);
         for face in &strip.faces[before..] {
-            let [a, b, c] = face.map(|v| place(&strip.points, v));
-            let middle = (a + b + c) / 3.0;
-            let front = match rail.convexity {
-                Convexity::Concave => here.center.midpoint(next.center) - middle,
-                Convexity::Convex => middle - here.center.midpoint(next.center),
-            };
-            if (b - a).cross(c - a).dot(front) <= 0.0 {
-                strip.folds.push(middle);
+            let corners = face.map(cell.at);
+            if !front.shows(corners) {
+                strip.folds.push(corners.iter().sum::<DVec3>() / 3.0);
             }
         }
     }
@@ -107,14 +107,33 @@ fn section(center: DVec3, [p1, p2]: [DVec3; 2]) -> Section {
     Section { p1, p0: center + (mean + skew) * e1 + (mean - skew) * e2, p2 }
 }
 
+/// Which way the surface between two profiles faces: to the ball in a valley, away from it on a ridge.
+#[derive(Clone, Copy)]
+struct Front {
+    center: DVec3,
+    convexity: Convexity,
+}
+
+impl Front {
+    fn shows(&self, [a, b, c]: [DVec3; 3]) -> bool {
+        let towards = (b - a).cross(c - a).dot(self.center - (a + b + c) / 3.0);
+        match self.convexity {
+            Convexity::Concave => towards > 0.0,
+            Convexity::Convex => towards < 0.0,
+        }
+    }
+}
+
 /// The quadrilateral between two neighbouring profiles.
-struct Cell<'a> {
+struct Cell<'a, P> {
     columns: [&'a Column; 2],
     /// Vertices of each linkage from this profile's foot to the next one's, both included.
     spans: [&'a [VertexId]; 2],
+    at: P,
+    front: Front,
 }
 
-impl Cell<'_> {
+impl<P: Fn(VertexId) -> DVec3> Cell<'_, P> {
     /// Vertex `k` of a column, counted from the left foot.
     fn vertex(&self, column: usize, k: u32) -> VertexId {
         let end =
@@ -127,52 +146,54 @@ impl Cell<'_> {
     }
 
     /// Zips the two columns together by their parameters, the linkages' own vertices fanned in at both ends.
-    fn triangulate(
-        &self,
-        points: &[DVec3],
-        place: &impl Fn(&[DVec3], VertexId) -> DVec3,
-        faces: &mut Vec<[VertexId; 3]>,
-    ) {
+    fn triangulate(&self, faces: &mut Vec<[VertexId; 3]>) {
         let last = self.columns.map(|c| c.inner + 1);
         let (mut i, mut j) = (0, 0);
         while i < last[0] || j < last[1] {
             let (l, r) = (self.vertex(0, i), self.vertex(1, j));
-            let take_left = j == last[1] || (i < last[0] && self.left_first(points, place, [i, j], last));
-            let apex = if take_left { self.vertex(0, i + 1) } else { self.vertex(1, j + 1) };
             let first = i == 0 && j == 0;
-            if take_left {
+            let take_left = j == last[1] || (i < last[0] && self.left_first([i, j], last));
+            let apex = if take_left {
                 i += 1;
+                self.vertex(0, i)
             } else {
                 j += 1;
-            }
+                self.vertex(1, j)
+            };
             if first {
-                for w in self.spans[0].windows(2) {
-                    faces.push([w[1], w[0], apex]);
-                }
+                // Seen from the strip, the left linkage runs backwards.
+                let backwards: Vec<_> = self.spans[0].iter().rev().copied().collect();
+                self.fan(backwards, apex, faces);
             } else if i == last[0] && j == last[1] {
-                let apex = if take_left { l } else { r };
-                for w in self.spans[1].windows(2) {
-                    faces.push([apex, w[0], w[1]]);
-                }
+                self.fan(self.spans[1].to_vec(), if take_left { l } else { r }, faces);
             } else {
                 faces.push([r, l, apex]);
             }
         }
     }
 
+    /// Joins a stretch of linkage to an apex. A path over facets can zigzag where it passes close by a vertex, so that
+    /// a plain fan would fold; there the pockets of the zigzag are filled first.
+    fn fan(&self, mut chain: Vec<VertexId>, apex: VertexId, faces: &mut Vec<[VertexId; 3]>) {
+        let shows = |corners: [VertexId; 3]| self.front.shows(corners.map(&self.at));
+        while let Some(back) = chain.windows(2).position(|w| !shows([w[0], w[1], apex])) {
+            let pocket = [back, back + 1]
+                .into_iter()
+                .find(|&k| k > 0 && k + 1 < chain.len() && shows([chain[k - 1], chain[k], chain[k + 1]]));
+            let Some(k) = pocket else { break };
+            faces.push([chain[k - 1], chain[k], chain[k + 1]]);
+            chain.remove(k);
+        }
+        faces.extend(chain.windows(2).map(|w| [w[0], w[1], apex]));
+    }
+
     /// Which column to climb: the one that lags behind, or on a tie the one with the shorter diagonal.
-    fn left_first(
-        &self,
-        points: &[DVec3],
-        place: &impl Fn(&[DVec3], VertexId) -> DVec3,
-        [i, j]: [u32; 2],
-        last: [u32; 2],
-    ) -> bool {
+    fn left_first(&self, [i, j]: [u32; 2], last: [u32; 2]) -> bool {
         let (left, right) = ((i + 1) * last[1], (j + 1) * last[0]);
         if left != right {
             return left < right;
         }
-        let p = |column, k| place(points, self.vertex(column, k));
+        let p = |column, k| (self.at)(self.vertex(column, k));
         p(0, i + 1).distance_squared(p(1, j)) <= p(1, j + 1).distance_squared(p(0, i))
     }
 }
