@@ -18,7 +18,7 @@ pub fn carry(inputs: &[Model], mesh: TriMesh, origins: &Origins) -> Model {
     let normals = inputs
         .iter()
         .any(|m| m.normals.is_some())
-        .then(|| corners.map(|m, h| m.normals.as_ref().map(|a| a[h].extend(0.0)), |v| v.truncate()));
+        .then(|| corners.map(|m, h| m.normals.as_ref().map(|a| a[h].extend(0.0)), DVec4::truncate));
     let colors = inputs
         .iter()
         .any(|m| m.colors.is_some())
@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn an_untouched_mesh_keeps_its_attributes_bit_for_bit() {
         let model = painted();
-        let carried = carry(&[model.clone()], model.mesh.clone(), &Origins::identity(0, 8, 12));
+        let carried = carry(std::slice::from_ref(&model), model.mesh.clone(), &Origins::identity(0, 8, 12));
         assert_eq!((carried.uvs, carried.groups), (model.uvs, model.groups));
         assert!(carried.normals.is_none() && carried.colors.is_none() && carried.materials.is_none());
     }

@@ -3,6 +3,7 @@
 use crate::{Invalid, blend};
 use glam::DVec3;
 use mesh_core::{Cancelled, NotManifold};
+use tri_intersect::EmbedError;
 
 /// Why there is no result.
 #[derive(Debug, thiserror::Error)]
@@ -48,7 +49,7 @@ impl Error {
     pub fn place(&self) -> Option<DVec3> {
         use tri_intersect::Error as B;
         match self {
-            Self::NotManifold { source, .. } => source.place,
+            Self::NotManifold { source, .. } | Self::Blend(blend::Error::Invalid(source)) => source.place,
             Self::Boolean { source, .. } => match *source {
                 B::Open { at, .. }
                 | B::Degenerate { at, .. }
@@ -60,7 +61,11 @@ impl Error {
             },
             Self::Blend(blend::Error::DoesNotFit { at, .. }) => Some(*at),
             Self::Blend(blend::Error::Spine(error)) | Self::Seam(error) => error.place(),
-            Self::Blend(blend::Error::Invalid(source)) => source.place,
+            Self::Blend(blend::Error::Embed(error)) => match error {
+                EmbedError::Crossings(all) => all.first().map(|c| c.place),
+                EmbedError::Apart { place, .. } | EmbedError::TooSmall { place, .. } => Some(*place),
+                _ => None,
+            },
             Self::Invalid(invalid) => invalid.at,
             Self::NoCurve(_, at) => *at,
             Self::Blend(_) | Self::TooFew(_) | Self::Cancelled(_) => None,

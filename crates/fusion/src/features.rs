@@ -80,8 +80,9 @@ pub fn nearest_curve<M: Adjacency + Positions>(
     let distance = |h: HalfedgeId| {
         let (a, b) = (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
         let t = (point - a).dot(b - a) / (b - a).length_squared();
-        // A zero-length edge gives NaN, which `max` turns into the edge's start.
-        point.distance(a + t.max(0.0).min(1.0) * (b - a))
+        // A zero-length edge gives NaN; its start serves.
+        let t = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) };
+        point.distance(a + t * (b - a))
     };
     let nearest = |c: &FeatureCurve| c.halfedges.iter().map(|&h| distance(h)).fold(f64::INFINITY, f64::min);
     curves.iter().map(nearest).enumerate().min_by(|a, b| a.1.total_cmp(&b.1))

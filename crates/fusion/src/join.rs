@@ -5,7 +5,7 @@ use crate::{Counts, Error, Invalid, Report, blend};
 use mesh_core::{Connected, Faces, Origins, Stage, TriMesh, Watch};
 use mesh_io::{Format, Model};
 use spine::BlendCurve;
-use tri_intersect::{Boolean, Operation, Slivers, Warning, boolean};
+use tri_intersect::{Boolean, Contact, Operation, Slivers, Warning, boolean};
 
 /// What to do with the parts.
 #[derive(Clone, Debug)]
@@ -74,7 +74,8 @@ fn overlay(
     report: &mut Report,
     watch: &Watch,
 ) -> Result<Boolean, Error> {
-    let mut how = tri_intersect::Params::default();
+    // Sheets that touch without crossing would be self-intersections of the file.
+    let mut how = tri_intersect::Params { contact: Contact::Refuse, ..tri_intersect::Params::default() };
     if params.blend.is_some() {
         // The blend removes the seam with all its slivers.
         how.slivers = Slivers::Keep;

@@ -45,7 +45,7 @@ impl Golden {
             diagonal: bounds(mesh).diagonal(),
             area: area(mesh),
             volume: volume(mesh),
-            samples: mesh.positions.iter().step_by(stride).map(|p| p.to_array()).collect(),
+            samples: mesh.positions.iter().step_by(stride).map(glam::DVec3::to_array).collect(),
         })
     }
 

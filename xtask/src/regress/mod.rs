@@ -73,7 +73,7 @@ fn cases(bless: bool, reference: &mut Option<Reference>) -> Result<usize, Fault>
                 match Golden::read(&record)? {
                     _ if bless => now.bless(&record)?,
                     None => {
-                        wrong.push("has no approved record; look at it, then run `cargo xtask regress --bless`".into())
+                        wrong.push("has no approved record; look at it, then run `cargo xtask regress --bless`".into());
                     }
                     Some(approved) => wrong.extend(now.differences(&approved)),
                 }

@@ -123,7 +123,8 @@ fn table(rows: &[Row], radii: &[f64], checked: bool) -> Result<String, Fault> {
             Ok(joined) => (joined.milliseconds, format!("done; {}", joined.warnings.join("; "))),
             Err(failure) => (failure.milliseconds, failure.reason.clone()),
         };
-        let faults: String = row.faults.iter().map(|f| format!("; **{f}**")).collect();
+        let faults: Vec<_> = row.faults.iter().map(|f| format!("; **{f}**")).collect();
+        let faults = faults.concat();
         writeln!(text, "| {} | {}% | {time:.0} | {}{faults} |", row.name, 100.0 * row.share, words.replace('|', "/"))?;
     }
     Ok(text)

@@ -36,7 +36,8 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
             FaceOrigin::Input { part, .. } | FaceOrigin::Piece { part, .. } => palette_index(Some(part)),
             FaceOrigin::New { .. } => palette_index(None),
         });
-        let look = render::Params { color: render::Color::Origin(color.collect()), view: piece.view, ..Default::default() };
+        let look =
+            render::Params { color: render::Color::Origin(color.collect()), view: piece.view, ..Default::default() };
         let png = draw(session, &outcome.model.mesh, &look)?;
         let ply = mesh_io::to_bytes(&outcome.model, Format::Ply).map_err(Failure::unwritable)?;
         let report = outcome.report.to_json().into_bytes();
@@ -52,12 +53,16 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
 
 fn pieces() -> Vec<Piece> {
     let at = |mesh, x, y, z| Model::from(shapes::posed(mesh, DQuat::IDENTITY, DVec3::new(x, y, z)));
-    let lying = |mesh| Model::from(shapes::posed(mesh, DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2), DVec3::ZERO));
+    let lying =
+        |mesh| Model::from(shapes::posed(mesh, DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2), DVec3::ZERO));
     vec![
         Piece {
             name: "blobs",
             what: "two organic blobs, joined with a fillet",
-            parts: vec![at(shapes::blob(1.0, 5, 0.35, 7), 0.0, 0.0, 0.0), at(shapes::blob(0.75, 5, 0.35, 12), 1.05, 0.45, 0.2)],
+            parts: vec![
+                at(shapes::blob(1.0, 5, 0.35, 7), 0.0, 0.0, 0.0),
+                at(shapes::blob(0.75, 5, 0.35, 12), 1.05, 0.45, 0.2),
+            ],
             operation: Operation::Union,
             radius: 0.16,
             view: DVec3::new(0.3, 0.45, 1.0),

@@ -17,7 +17,7 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         check_writable(path)?;
     }
     let model = session.read(&args.mesh, &args.source)?;
-    let mut report = Report::new("features", counts(&[args.mesh.clone()], std::slice::from_ref(&model)));
+    let mut report = Report::new("features", counts(std::slice::from_ref(&args.mesh), std::slice::from_ref(&model)));
     let mesh = report.time("connect", || Connected::new(model.mesh)).map_err(Failure::impossible)?;
     let params = Params { angle: args.angle, ..Params::default() };
     let curves = report.time("features", || feature_curves(&mesh, &params));
