@@ -81,9 +81,9 @@ impl Contact {
         patches: &[Patch; 2],
         radius: &RadiusField,
         center: DVec3,
-        known: [DVec3; 2],
+        known: Option<[DVec3; 2]>,
     ) -> Option<Self> {
-        Self::at(mesh, patches, radius, center, Some(known)).map(|(contact, _)| contact)
+        Self::at(mesh, patches, radius, center, known).map(|(contact, _)| contact)
     }
 
     /// Unit directions from the feet to the centre.

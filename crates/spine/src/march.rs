@@ -121,7 +121,7 @@ fn stride_from<M: Adjacency + Positions>(
         // corner. The guess is put on the third contact's side, so that its branch is found and not the old one, from
         // which a spine that turns back in a crevice hardly differs.
         let round_the_corner = || {
-            let blocked = Contact::probe(mesh, patches, radius, ahead, known)?;
+            let blocked = Contact::probe(mesh, patches, radius, ahead, Some(known))?;
             let heading = sign * blocked.tangent()?;
             let jumped = |s: &usize| blocked.feet[*s].point.distance(known[*s]) > 2.0 * *stride;
             let lean: DVec3 = (0..2).filter(jumped).map(|s| blocked.normals()[s]).sum();

@@ -47,7 +47,7 @@ impl Loop {
             .filter_map(|s| {
                 let [center, left, right] = self.at(s);
                 let feet = [patches[0].closest(mesh, left)?, patches[1].closest(mesh, right)?];
-                let ball = Contact::probe(mesh, patches, radius, center)?;
+                let ball = Contact::probe(mesh, patches, radius, center, None)?;
                 // Two points that follow each other have images in a common face, so a mean of images is an image.
                 let feet = feet.map(|f| mesh_query::ClosestPoint { distance: f.point.distance(center), ..f });
                 Some(Contact { feet, ..ball })
