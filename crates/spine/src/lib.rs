@@ -184,6 +184,16 @@ pub enum Error {
         /// The radius there.
         radius: f64,
     },
+    /// The step is lost beside the length of the spine.
+    #[error("a spine of length {length} at {at} cannot be walked in steps of {step}; take a larger radius or step")]
+    TooFine {
+        /// A point of the spine.
+        at: DVec3,
+        /// Its length.
+        length: f64,
+        /// The step asked for.
+        step: f64,
+    },
     /// The patch has coordinates that boxes cannot hold.
     #[error(transparent)]
     Query(#[from] mesh_query::Error),
@@ -199,6 +209,7 @@ impl Error {
             | Self::Stuck { at, .. }
             | Self::Astray { at, .. }
             | Self::NoLoop { at, .. }
+            | Self::TooFine { at, .. }
             | Self::Folded { at, .. } => Some(at),
             Self::BadRadius { .. } | Self::Query(_) => None,
         }

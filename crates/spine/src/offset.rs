@@ -18,7 +18,7 @@ use mesh_core::{Adjacency, EdgeId, Positions, Watch};
 use moved::MovedPatch;
 use sampling::Loop;
 use std::collections::HashSet;
-use tri_intersect::{Curve, intersection_curves};
+use tri_intersect::{Curve, CurvePoint, intersection_curves};
 
 /// How offset patches are made and their crossing is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +53,7 @@ pub enum OffsetKeep {
 /// crossing and whose residuals are measured.
 ///
 /// # Errors
-/// [`Error::NoLoop`], [`Error::Folded`].
+/// [`Error::NoLoop`], [`Error::Folded`], [`Error::TooFine`].
 pub(crate) fn trace<M: Adjacency + Positions + Sync>(
     mesh: &M,
     curve: &BlendCurve,
@@ -69,27 +69,38 @@ pub(crate) fn trace<M: Adjacency + Positions + Sync>(
     };
     let offset = |k: usize| MovedPatch::new(mesh, &base.patches[k], base.barriers, radius, side, params.keep);
     let (left, right) = rayon::join(|| offset(0), || offset(1));
+    // What could fail, faces without area and numbers that are not finite, has been left out.
     let crossings = match (&left, &right) {
         (Some(l), Some(r)) => intersection_curves(&l.offset, &r.offset, &Watch::default()).unwrap_or_default(),
         _ => vec![],
     };
-    let longest = |closed| {
-        let candidates = crossings.iter().filter(|c| c.closed == closed).map(|c| (length(c), c));
-        candidates.reduce(|best, c| if c.0 > best.0 { c } else { best })
-    };
-    let (closed, open) = (longest(true), longest(false));
+    let (open, mut closed): (Vec<_>, Vec<_>) = crossings.into_iter().partition(|c| !c.closed);
+    let chain = join(open, radius.base);
+    let mut open = None;
+    match chain {
+        Some(c) if c.closed => closed.push(c),
+        c => open = c,
+    }
+    let found = longest(closed);
     // A chain that ends where a patch was cut off goes on beyond.
-    if base.alpha < MAX_ALPHA && open.is_some_and(|o| closed.is_none_or(|c| o.0 > c.0)) {
+    let beyond = |o: &Curve| found.as_ref().is_none_or(|c| length(o) > length(c));
+    if base.alpha < MAX_ALPHA && open.as_ref().is_some_and(beyond) {
         return Ok(Trace::RanOff);
     }
-    let (Some((_, found)), Some(left), Some(right)) = (closed, left, right) else {
+    let (Some(found), Some(left), Some(right)) = (found, left, right) else {
         let start = curve.halfedges.first().map_or(DVec3::ZERO, |&h| mesh.position(mesh.tail(h)));
-        let at = open.and_then(|(_, o)| o.points.last()).map_or(start, |p| p.position);
+        let at = open.and_then(|o| o.points.last().copied()).map_or(start, |p| p.position);
         return Err(Error::NoLoop { at, radius: radius.at(at).0 });
     };
-    let spine = unfolded(found, convexity, [&left, &right], radius)?;
+    let spine = unfolded(&found, convexity, [&left, &right], radius)?;
+    if spine.length() / step > MOST_SAMPLES {
+        return Err(Error::TooFine { at: spine.start(), length: spine.length(), step });
+    }
     Ok(Trace::Closed(spine.contacts(mesh, base.patches, radius, step, params)))
 }
+
+/// Steps beyond this number are not worth their memory: the radius is lost beside the model.
+const MOST_SAMPLES: f64 = 1e5;
 
 /// The base patches as they were flooded.
 #[derive(Clone, Copy)]
@@ -99,6 +110,37 @@ pub(crate) struct Base<'a> {
     pub barriers: &'a HashSet<EdgeId>,
     /// How far they were flooded, in radii.
     pub alpha: f64,
+}
+
+/// The longest open chain, with others joined to its end over gaps of at most `reach`, and closed if its start is the
+/// next within reach.
+///
+/// Where the surface hardly turns at the blend curve, the feet lie beside it, and a crossing slips over the rim of one
+/// patch for a little way.
+fn join(mut open: Vec<Curve>, reach: f64) -> Option<Curve> {
+    open.sort_by(|a, b| length(b).total_cmp(&length(a)));
+    let mut rest: Vec<Vec<CurvePoint>> = open.into_iter().map(|c| c.points).collect();
+    if rest.is_empty() {
+        return None;
+    }
+    let mut points = rest.remove(0);
+    loop {
+        let (start, end) = (points[0].position, points[points.len() - 1].position);
+        let gap = |chain: &[CurvePoint]| chain[0].position.distance(end);
+        let next = (0..rest.len()).min_by(|&a, &b| gap(&rest[a]).total_cmp(&gap(&rest[b])));
+        let next = next.filter(|&i| gap(&rest[i]) <= reach && gap(&rest[i]) < start.distance(end));
+        let Some(i) = next else {
+            let chain = Curve { points, closed: false };
+            // A chain hardly longer than its gap is no loop.
+            let closed = start.distance(end) <= reach.min(0.25 * length(&chain));
+            return Some(Curve { closed, ..chain });
+        };
+        points.extend(rest.remove(i));
+    }
+}
+
+fn longest(curves: Vec<Curve>) -> Option<Curve> {
+    curves.into_iter().reduce(|best, c| if length(&c) > length(&best) { c } else { best })
 }
 
 fn length(curve: &Curve) -> f64 {
@@ -142,4 +184,34 @@ fn unfolded(
         points.reverse();
     }
     Ok(Loop::new(points))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh_core::{SurfacePoint, VertexId};
+
+    /// An arc of the unit circle, from and to in degrees.
+    fn arc(from: u32, to: u32) -> Curve {
+        let on = SurfacePoint::Vertex(VertexId(0));
+        let point = |degrees: u32| {
+            let (y, x) = f64::from(degrees).to_radians().sin_cos();
+            CurvePoint { position: DVec3::new(x, y, 0.0), on_a: on, on_b: on }
+        };
+        Curve { points: (from..=to).map(point).collect(), closed: false }
+    }
+
+    #[test]
+    fn broken_chains_join_and_short_ones_stay_open() {
+        let joined = join(vec![arc(300, 356), arc(0, 170), arc(174, 296)], 0.1).unwrap();
+        assert!(joined.closed && joined.points.len() == 57 + 171 + 123);
+        assert!((length(&joined) - std::f64::consts::TAU).abs() < 1e-3);
+        // Wider gaps, the wrong direction, and a chain no longer than its gap.
+        assert!(!join(vec![arc(0, 170), arc(180, 350)], 0.1).unwrap().closed);
+        let mut backward = arc(180, 356);
+        backward.points.reverse();
+        assert!(!join(vec![arc(0, 176), backward], 0.1).unwrap().closed);
+        assert!(!join(vec![arc(0, 4)], 0.1).unwrap().closed);
+        assert!(join(vec![], 0.1).is_none());
+    }
 }

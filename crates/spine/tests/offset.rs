@@ -226,3 +226,22 @@ fn a_dip_moves_the_spine() {
     assert!(rail.residual < 0.01 * BALL, "{}", rail.residual);
     assert!(rail.samples.iter().all(|s| (s.center.z - s.radius).abs() < 0.01 * BALL));
 }
+
+/// Radii far beyond and far below the model end in an answer or an error that names a place, whatever the solver's
+/// other numbers are.
+#[test]
+fn wild_numbers_are_survived() {
+    let joint = Joint::of(plate(), ball(6), Operation::Union);
+    for radius in [1e300, 1e30, 1e-30, 1e-300] {
+        let solver = Solver::Offset(OffsetParams::default());
+        if let Err(e) = joint.roll(solver, radius) {
+            assert!(e.place().is_some_and(DVec3::is_finite), "{radius} {e}");
+        }
+    }
+    for (step, bend, samples) in [(f64::NAN, f64::NAN, 0), (f64::INFINITY, 0.0, 7), (0.05, -1.0, 1)] {
+        let solver = Solver::Offset(OffsetParams { bend, samples, ..OffsetParams::default() });
+        let params = Params { solver, step, ..Params::new(BALL) };
+        let rail = roll(&joint.mesh, &joint.curve, std::slice::from_ref(&joint.curve), &params).unwrap();
+        assert!(rail.samples.len() >= 4 && rail.residual < 0.1 * BALL);
+    }
+}

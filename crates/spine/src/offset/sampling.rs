@@ -33,6 +33,14 @@ impl Loop {
         Self { points, arc }
     }
 
+    pub fn length(&self) -> f64 {
+        self.arc[self.arc.len() - 1]
+    }
+
+    pub fn start(&self) -> DVec3 {
+        self.points[0][0]
+    }
+
     /// Balls along the loop no more than `step` apart.
     pub fn contacts<M: Adjacency + Positions + Sync>(
         &self,
@@ -42,8 +50,8 @@ impl Loop {
         step: f64,
         params: &OffsetParams,
     ) -> Vec<Contact> {
-        let at: Vec<f64> = self.parameters(step, params);
-        at.into_par_iter()
+        self.parameters(step, params)
+            .into_par_iter()
             .filter_map(|s| {
                 let [center, left, right] = self.at(s);
                 let feet = [patches[0].closest(mesh, left)?, patches[1].closest(mesh, right)?];
@@ -57,9 +65,8 @@ impl Loop {
 
     /// Arc lengths of the samples, ascending.
     fn parameters(&self, step: f64, params: &OffsetParams) -> Vec<f64> {
-        let total = self.arc[self.arc.len() - 1];
-        // A step a million times smaller than the spine is taken for an error.
-        let count = (total / step).ceil().clamp(f64::from(params.samples.max(4)), 1e6) as u32;
+        let total = self.length();
+        let count = (total / step).ceil().max(f64::from(params.samples.max(4))).min(super::MOST_SAMPLES) as u32;
         let mut found = Vec::new();
         for k in 0..count {
             let ends = [k, k + 1].map(|k| total * f64::from(k) / f64::from(count));
