@@ -6,12 +6,19 @@
 //! | `truth.rs` | the exact ball's way and the canal surface around it |
 //! | `cases.rs` | the solids, at any resolution, in a generic pose |
 //! | `measure.rs` | errors and angles of a result against the truth |
+//! | `main.rs` | bounds, order, validity and locality of every case |
+//! | `balls.rs` | balls against the input's triangles |
+//! | `volume.rs` | material added and taken |
+//! | `symmetry.rs` | threads, order of the parts, quarter turns |
 //!
 //! `cargo test -p fusion --test analytic -- --nocapture` prints the figures.
 
+mod balls;
 mod cases;
 mod measure;
+mod symmetry;
 mod truth;
+mod volume;
 
 use cases::Pair::{Branch, Cross, PlateCylinder, PlateSphere, Spheres};
 use cases::{COARSE, Case, Pair, RADIUS, SMALLER};
@@ -204,6 +211,32 @@ fn equal_cylinders_blend_or_are_refused_with_a_place() {
                 }
                 Err(e) => panic!("{e}"),
             }
+        }
+    }
+}
+
+/// Small and large balls, half an edge and several edges wide.
+#[test]
+fn bounds_hold_for_other_radii() {
+    for r in [0.1, 0.4] {
+        for (pair, operation) in [
+            (PlateSphere, Union),
+            (PlateSphere, Difference),
+            (PlateCylinder, Union),
+            (PlateCylinder, Intersection),
+            (Spheres, Union),
+            (Spheres, Difference),
+            (Branch(SMALLER), Union),
+            (Cross(SMALLER), Difference),
+        ] {
+            let case = Case::new(pair, operation, 2 * COARSE, r);
+            let run = run(&case, |_| {}).unwrap_or_else(|e| panic!("{pair:?} {operation:?} {r}: {e}"));
+            let m = measure(&case, &run);
+            println!("{pair:?} {operation:?} r = {r} | {}", row(&m, run.milliseconds));
+            assert_valid(&run);
+            assert_local(&case, &run);
+            assert!(run.blended.shrunk.is_empty() && run.blended.full_share == 1.0);
+            assert!(m.inner_share <= 1.0 && m.linkage_share <= 1.0, "{pair:?} {operation:?} {r}: {m:?}");
         }
     }
 }

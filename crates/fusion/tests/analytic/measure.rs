@@ -4,7 +4,8 @@ use crate::cases::Case;
 use fusion::blend::{Blended, Error, Params, blend};
 use mesh_core::{Adjacency, Connected, FaceId, FaceOrigin, Faces, HalfedgeId, Positions, TriMesh, VertexOrigin, Watch};
 use spine::BlendCurve;
-use tri_intersect::boolean;
+use std::time::Instant;
+use tri_intersect::{Seam, boolean};
 
 /// A boolean, its seams as blend curves, and the blend along all of them.
 pub struct Run {
@@ -15,19 +16,22 @@ pub struct Run {
     pub milliseconds: f64,
 }
 
-pub fn run(case: &Case, adjust: impl Fn(&mut Params)) -> Result<Run, Error> {
+/// The boolean of a case and its seams.
+pub fn join(case: &Case) -> (Connected<TriMesh>, Vec<BlendCurve>) {
     let [a, b] = &case.parts;
-    let made =
-        boolean(a, b, case.operation, &tri_intersect::Params::default(), &Watch::default()).expect("clean solids");
+    let made = boolean(a, b, case.operation, &tri_intersect::Params::default(), &Watch::default());
+    let made = made.expect("clean solids");
     let joined = Connected::new(made.mesh).expect("a boolean is manifold");
-    let curves: Vec<BlendCurve> = made
-        .seams
-        .iter()
-        .map(|s| BlendCurve::from_vertices(&joined, &s.vertices).expect("seams run along edges"))
-        .collect();
+    let curve = |s: &Seam| BlendCurve::from_vertices(&joined, &s.vertices).expect("seams run along edges");
+    let curves = made.seams.iter().map(curve).collect();
+    (joined, curves)
+}
+
+pub fn run(case: &Case, adjust: impl Fn(&mut Params)) -> Result<Run, Error> {
+    let (joined, curves) = join(case);
     let mut params = Params::new(case.truth.radius);
     adjust(&mut params);
-    let since = std::time::Instant::now();
+    let since = Instant::now();
     let blended = blend(&joined, &curves, &params, &Watch::default())?;
     let milliseconds = since.elapsed().as_secs_f64() * 1e3;
     Ok(Run { joined, curves, blended, milliseconds })
