@@ -36,6 +36,8 @@ struct Expect {
     facets: f64,
 }
 
+/// What the closed form asks for. Where the ball is inside a curved part, its feet jump over the edges between facets and
+/// the blend's normals there miss the facets' by more; such cases state by how much.
 const EXACT: Expect = Expect { order: 1.8, facets: 1.0 };
 
 /// Three resolutions of one case: bounds, order, validity, locality, normals.
@@ -55,7 +57,7 @@ fn check(name: &str, pair: Pair, operation: Operation, expect: &Expect) {
             );
             assert!(m.inner_share <= 1.0, "{name}: {m:?}");
             assert!(m.linkage_share <= 1.0, "{name}: {m:?}");
-            assert!(m.kink_beyond_chord[0] <= expect.facets * m.facet_angle, "{name}: {m:?}");
+            assert!(m.kink_beyond_chord <= expect.facets * m.facet_angle, "{name}: {m:?}");
             m
         })
         .into();
@@ -69,7 +71,7 @@ fn check(name: &str, pair: Pair, operation: Operation, expect: &Expect) {
 fn row(m: &Measured, ms: f64) -> String {
     format!(
         "sagitta {:.2e} | largest {:.2e}, share of the bound {:.2} | rms {:.2e} | linkage {:.2e}, {:.2}, drift {:.2e} | \
-         facet {:.1}°, kink {:.1}°, beyond the chord {:.1}°, at short edges too {:.1}° | {ms:.1} ms",
+         facet {:.1}°, kink {:.1}°, beyond the chord {:.1}° | {ms:.1} ms",
         m.sagitta,
         m.inner[0],
         m.inner_share,
@@ -79,8 +81,7 @@ fn row(m: &Measured, ms: f64) -> String {
         m.drift,
         m.facet_angle.to_degrees(),
         m.kink.to_degrees(),
-        m.kink_beyond_chord[0].to_degrees(),
-        m.kink_beyond_chord[1].to_degrees(),
+        m.kink_beyond_chord.to_degrees(),
     )
 }
 
@@ -139,11 +140,9 @@ fn plate_minus_sphere() {
     check("plate - sphere", PlateSphere, Difference, &EXACT);
 }
 
-// Where the ball is inside the curved part the feet outrun the spine; balls put in between are interpolated, which
-// holds the order and the normals back.
 #[test]
 fn plate_and_sphere() {
-    check("plate & sphere", PlateSphere, Intersection, &Expect { order: 1.65, facets: 2.0 });
+    check("plate & sphere", PlateSphere, Intersection, &Expect { order: 1.75, facets: 2.0 });
 }
 
 #[test]
@@ -158,7 +157,7 @@ fn plate_minus_cylinder() {
 
 #[test]
 fn plate_and_cylinder() {
-    check("plate & cylinder", PlateCylinder, Intersection, &Expect { facets: 1.2, ..EXACT });
+    check("plate & cylinder", PlateCylinder, Intersection, &EXACT);
 }
 
 #[test]
@@ -168,12 +167,12 @@ fn sphere_plus_sphere() {
 
 #[test]
 fn sphere_minus_sphere() {
-    check("sphere - sphere", Spheres, Difference, &Expect { facets: 1.3, ..EXACT });
+    check("sphere - sphere", Spheres, Difference, &Expect { facets: 1.5, ..EXACT });
 }
 
 #[test]
 fn sphere_and_sphere() {
-    check("sphere & sphere", Spheres, Intersection, &Expect { order: 1.75, facets: 1.4 });
+    check("sphere & sphere", Spheres, Intersection, &Expect { facets: 1.8, ..EXACT });
 }
 
 #[test]
@@ -193,7 +192,7 @@ fn cylinder_and_cylinder() {
 
 #[test]
 fn equal_cylinders_apart() {
-    check("cylinder - equal cylinder", Cross(1.0), Difference, &Expect { facets: 1.1, ..EXACT });
+    check("cylinder - equal cylinder", Cross(1.0), Difference, &Expect { facets: 1.25, ..EXACT });
 }
 
 /// Where two equal cylinders touch, the ball touches both at one point: the blend has no width there.

@@ -56,8 +56,8 @@ pub struct Measured {
     /// Largest angle between a blend face and a kept face at a linkage edge.
     pub kink: f64,
     /// The largest by which such an angle exceeds half the turn of the exact blend across the blend face, which is
-    /// what a chord of an arc makes with its end: at edges longer than a fiftieth of the radius, and at all.
-    pub kink_beyond_chord: [f64; 2],
+    /// what a chord of an arc makes with its end.
+    pub kink_beyond_chord: f64,
 }
 
 pub fn measure(case: &Case, run: &Run) -> Measured {
@@ -85,7 +85,7 @@ pub fn measure(case: &Case, run: &Run) -> Measured {
     let connected = Connected::new(mesh).expect("a blend is manifold");
     let first = run.blended.first_blend_face;
     let mut rim = Vec::new();
-    let (mut kink, mut beyond, mut drift) = (0.0f64, [f64::NEG_INFINITY; 2], 0.0f64);
+    let (mut kink, mut beyond, mut drift) = (0.0f64, f64::NEG_INFINITY, 0.0f64);
     for f in (first.0..mesh.face_count() as u32).map(FaceId) {
         for h in (0..3).map(|k| HalfedgeId::new(f, k)) {
             let Some(other) = connected.twin(h).map(HalfedgeId::face).filter(|&o| o < first) else { continue };
@@ -100,11 +100,7 @@ pub fn measure(case: &Case, run: &Run) -> Measured {
             let turns = mesh.corners(f).map(|v| truth.near(mesh.position(v)).to_point);
             let turn = (0..3).map(|i| turns[i].angle_between(turns[(i + 1) % 3])).fold(0.0, f64::max);
             kink = kink.max(angle);
-            let excess = angle - 0.5 * turn;
-            if p.distance(mesh.position(connected.head(h))) > 0.02 * truth.radius {
-                beyond[0] = beyond[0].max(excess);
-            }
-            beyond[1] = beyond[1].max(excess);
+            beyond = beyond.max(angle - 0.5 * turn);
         }
     }
     let (linkage, linkage_share) = spread(&rim);

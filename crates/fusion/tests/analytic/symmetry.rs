@@ -48,8 +48,8 @@ fn turned(mesh: &TriMesh, quarter: impl Fn(DVec3) -> DVec3) -> TriMesh {
     TriMesh { positions: mesh.positions.iter().map(|&p| quarter(p)).collect(), faces: mesh.faces.clone() }
 }
 
-/// Where the trace begins differs in general, and with it the profiles: results agree to the chords' sagitta, not to
-/// the bit.
+/// A quarter turn changes nothing but rounding. With the parts swapped the trace runs the other way, so that profiles fall
+/// elsewhere: results agree to the sagitta of the chords along and across.
 #[test]
 fn quarter_turns_and_swapped_parts_give_the_same_shape() {
     for &(pair, operation) in CASES {
@@ -63,13 +63,13 @@ fn quarter_turns_and_swapped_parts_give_the_same_shape() {
             turned(&run(&turned_case, |_| {}).expect("clean cases blend").blended.mesh, |p| DVec3::new(p.y, -p.x, p.z));
         let turn = apart(&plain, &turned_back) / RADIUS;
         println!("{pair:?} {operation:?}: a quarter turn moves it by {turn:.1e} of the radius");
-        assert!(turn < 0.01, "{pair:?} {operation:?}: {turn}");
+        assert!(turn < 1e-5, "{pair:?} {operation:?}: {turn}");
         if operation != Difference {
             let [a, b] = case.parts;
             let swapped = Case { parts: [b, a], ..Case::new(pair, operation, 2 * COARSE, RADIUS) };
             let swap = apart(&plain, &run(&swapped, |_| {}).expect("clean cases blend").blended.mesh) / RADIUS;
             println!("{pair:?} {operation:?}: swapping the parts moves it by {swap:.1e} of the radius");
-            assert!(swap < 0.01, "{pair:?} {operation:?}: {swap}");
+            assert!(swap < 0.025, "{pair:?} {operation:?}: {swap}");
         }
     }
 }
