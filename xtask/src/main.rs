@@ -65,9 +65,9 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_path_buf).unwrap_or_default()
 }
 
-/// The release build of a program of this workspace, built if need be.
+/// The build of a program of this workspace that belongs to the running one, made if need be.
 fn binary(name: &str) -> Result<PathBuf, Fault> {
-    let status = Command::new(env!("CARGO")).args(["build", "--release", "-p", name]).current_dir(root()).status()?;
+    let status = Command::new(env!("CARGO")).args(["build", "--quiet", "-p", name]).current_dir(root()).status()?;
     if !status.success() {
         return Err(format!("{name} does not build").into());
     }

@@ -52,20 +52,15 @@ pub(crate) fn trace<M: Adjacency + Positions>(
     let mut contacts = vec![start];
     let (mut here, mut travelled, mut stride) = (start, 0.0, step);
     while travelled < limit {
-        let direction = sign * here.tangent().ok_or(stuck(&here, radius))?;
-        let next = stride_from(mesh, patches, radius, &here, direction, sign, &mut stride, step / 256.0)
-            .ok_or(stuck(&here, radius))?;
+        let next = stride_from(mesh, patches, radius, &here, sign, &mut stride).ok_or(stuck(&here, radius))?;
         match footing(&next) {
             Footing::Firm => {}
             Footing::AtRim => return Ok(Trace::RanOff),
             Footing::Tipping => return Err(stuck(&next, radius)),
         }
         let chord = next.center - here.center;
-        if travelled > 2.0 * step && closes(&start, &here, chord, direction, step) {
-            if contacts.len() > 3
-                && next.center.distance(start.center) > 0.0
-                && here.center.distance(start.center) < 0.3 * step
-            {
+        if travelled > 2.0 * step && closes(&start, &here, chord, step) {
+            if contacts.len() > 3 && here.center.distance(start.center) < 0.3 * step {
                 contacts.pop();
             }
             return Ok(Trace::Closed(contacts));
@@ -87,14 +82,16 @@ fn stuck(here: &Contact, radius: &RadiusField) -> Error {
 }
 
 /// Whether the step from `here` along `chord` comes past the start.
-fn closes(start: &Contact, here: &Contact, chord: DVec3, direction: DVec3, step: f64) -> bool {
+fn closes(start: &Contact, here: &Contact, chord: DVec3, step: f64) -> bool {
     let to_start = start.center - here.center;
     let along = to_start.dot(chord) / chord.length_squared();
     (0.0..=1.0).contains(&along)
         && (to_start - along * chord).length() < 0.5 * step
         && start.tangent().zip(here.tangent()).is_some_and(|(s, h)| s.dot(h) > 0.0)
-        && to_start.dot(direction) > 0.0
 }
+
+/// Shortest step along the spine, as a share of the radius: a place that a shorter one would pass needs a smaller ball.
+const SHORTEST: f64 = 5e-4;
 
 /// One step, halved until the seated ball is ahead and near. Where the spine turns sharply because the ball meets a
 /// third contact, the tangent behind the corner serves in place of the one before it.
@@ -103,13 +100,12 @@ fn stride_from<M: Adjacency + Positions>(
     patches: &[Patch; 2],
     radius: &RadiusField,
     here: &Contact,
-    direction: DVec3,
     sign: f64,
     stride: &mut f64,
-    shortest: f64,
 ) -> Option<Contact> {
+    let direction = sign * here.tangent()?;
     let known = here.feet.map(|f| f.point);
-    while *stride > shortest {
+    while *stride > SHORTEST * radius.base {
         let reached = |heading: DVec3, guess: DVec3| {
             let next = Contact::seat(mesh, patches, radius, guess, Some(known))?;
             let chord = next.center - here.center;

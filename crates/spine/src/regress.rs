@@ -30,7 +30,7 @@ pub(crate) fn regress(samples: &[Sample], convexity: Convexity, longest: f64) ->
             continue;
         }
         if let Some((back, ahead)) = bridge(samples, i, longest, |a, b| !dropped[a] && !dropped[b] && advances(a, b)) {
-            for k in 1..(back + ahead + 1) {
+            for k in 1..=back + ahead {
                 dropped[(i + n - back + k) % n] = true;
             }
         }
@@ -50,8 +50,8 @@ fn bridge(
         let mut within = false;
         // Balanced bridges first: they change each side least.
         for k in 0..=steps {
-            let back = if k % 2 == 0 { (steps + k) / 2 } else { (steps - k) / 2 };
-            let (Some(ahead), true) = (steps.checked_sub(back), back <= steps) else { continue };
+            let back = if k % 2 == 0 { steps / 2 + k / 2 } else { steps / 2 - k.div_ceil(2).min(steps / 2) };
+            let Some(ahead) = steps.checked_sub(back) else { continue };
             let (a, b) = ((i + n - back) % n, (i + 1 + ahead) % n);
             if samples[a].center.distance(samples[b].center) > longest {
                 continue;

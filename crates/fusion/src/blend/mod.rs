@@ -176,7 +176,7 @@ fn attempt(
             }
             Err(trouble) => trouble,
         };
-        let Trouble::Places { what, ref places } = trouble else { return Err(trouble) };
+        let Trouble::Places { ref places, .. } = trouble else { return Err(trouble) };
         if params.overlap == Overlap::Error && round >= 2 || round >= rounds || !mends.add(places, params.overlap) {
             return Err(trouble);
         }
@@ -228,7 +228,7 @@ fn roll_missing(
             Some(Ok(r)) => *rail = Some(r),
             Some(Err(e)) => match (&e, e.place()) {
                 (spine::Error::NoStart { .. } | spine::Error::Stuck { .. } | spine::Error::Astray { .. }, Some(at)) => {
-                    places.push(at)
+                    places.push(at);
                 }
                 _ => return Err(Trouble::Spine(e)),
             },
@@ -347,7 +347,7 @@ impl Mends {
             let extent = r * (3.0 + 0.5 * f64::from(count));
             self.softenings.push(Softening { at, extent, extra: 0.3 * r * f64::from(count.min(3)) });
             if count > 1 && overlap == Overlap::Shrink {
-                self.radius.dips.push(Dip { at, factor: 0.7f64.powi(count as i32 - 1), extent });
+                self.radius.dips.push(Dip { at, factor: 0.7f64.powf(f64::from(count - 1)), extent });
             }
         }
         self.spots.iter().all(|s| s.1 < 8)

@@ -1,6 +1,6 @@
 //! What lies between the linkages is removed and the strips are put in its place.
 
-use super::linkage::Opened;
+use super::linkage::{Linkage, Opened};
 use super::strip::Strip;
 use super::trouble::Trouble;
 use glam::DVec3;
@@ -22,18 +22,15 @@ pub(crate) fn between(
     opened: &Opened,
     curves: &[BlendCurve],
 ) -> Result<FaceMap<bool>, Trouble> {
-    let chains = || opened.linkages.iter().flatten().map(|l| l.chain());
+    let chains = || opened.linkages.iter().flatten().map(Linkage::chain);
     let walls = chains().flat_map(|c| c.windows(2).map(|w| [w[0], w[1]]));
     let mut seeds = Vec::new();
     for curve in curves {
-        let seed = curve.halfedges.iter().find_map(|&h| halfedge(cut, mesh.tail(h), mesh.head(h)));
-        match seed {
-            Some(h) => seeds.push(h.face()),
-            None => {
-                let at = curve.halfedges.first().map_or(DVec3::ZERO, |&h| mesh.position(mesh.tail(h)));
-                return Err(Trouble::at("a linkage crosses the blend curve", vec![at]));
-            }
-        }
+        let Some(h) = curve.halfedges.iter().find_map(|&h| halfedge(cut, mesh.tail(h), mesh.head(h))) else {
+            let at = curve.halfedges.first().map_or(DVec3::ZERO, |&h| mesh.position(mesh.tail(h)));
+            return Err(Trouble::at("a linkage crosses the blend curve", vec![at]));
+        };
+        seeds.push(h.face());
     }
     let removed = flood(cut, walls, &seeds);
     let mut leaks = Vec::new();
