@@ -1,6 +1,7 @@
 //! What can be typed.
 
 use crate::length::{Length, angle, direction, point, positive_length};
+use crate::rolling::Rolling;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use std::ffi::OsString;
@@ -147,6 +148,8 @@ pub struct Join {
     /// Blend the seam with a ball of this radius
     #[arg(long, value_name = "R", value_parser = positive_length)]
     pub radius: Option<Length>,
+    #[command(flatten)]
+    pub rolling: Rolling,
 }
 
 #[derive(Args)]
@@ -166,6 +169,8 @@ pub struct Blend {
     /// Blend only the feature curve nearest this point; may be given more than once
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub near: Vec<DVec3>,
+    #[command(flatten)]
+    pub rolling: Rolling,
 }
 
 #[derive(Args)]

@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `args.rs`, `length.rs` | what can be typed |
+//! | `args.rs`, `rolling.rs`, `length.rs` | what can be typed |
 //! | `failure.rs` | exit codes |
 //! | `session.rs` | one command: reading, progress, messages, writing |
 //! | `output.rs` | files that appear all at once or not at all |
@@ -14,6 +14,7 @@ mod failure;
 mod length;
 mod output;
 mod progress;
+mod rolling;
 mod session;
 mod verbs;
 

@@ -38,7 +38,46 @@ pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Re
     *worst = worst.max(blended.residual);
     report.figures.insert("radius".into(), params.radius);
     *report.figures.entry("strips".into()).or_default() += blended.strips as f64;
+    let smallest = blended.shrunk.iter().map(|s| s.1).fold(params.radius, f64::min);
+    for (name, value) in [("full_share", blended.full_share), ("smallest_radius", smallest)] {
+        let figure = report.figures.entry(name.into()).or_insert(value);
+        *figure = figure.min(value);
+    }
+    *report.figures.entry("shrunk_places".into()).or_default() += blended.shrunk.len() as f64;
     for (at, radius) in &blended.shrunk {
-        report.warnings.push(format!("the ball was made smaller, to a radius of {radius}, near {at}"));
+        report.warnings.push(format!(
+            "a ball of radius {} does not fit near {at}: one of radius {radius} is used there, fading into the full one",
+            params.radius
+        ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use mesh_core::FaceId;
+
+    /// Two seams blended in turn: the report holds the worst of both, and a sentence for every place.
+    #[test]
+    fn blends_add_up_in_the_report() {
+        let blended = |full_share, shrunk: &[(DVec3, f64)]| Blended {
+            mesh: TriMesh::default(),
+            origins: Origins::default(),
+            first_blend_face: FaceId(0),
+            strips: 1,
+            residual: 1e-12,
+            shrunk: shrunk.to_vec(),
+            full_share,
+        };
+        let (params, mut report) = (blend::Params::new(0.5), Report::default());
+        account(&blended(1.0, &[]), &params, &mut report);
+        let figures = |report: &Report| ["full_share", "smallest_radius", "shrunk_places"].map(|f| report.figures[f]);
+        assert_eq!((figures(&report), report.warnings.len()), ([1.0, 0.5, 0.0], 0));
+        account(&blended(0.75, &[(DVec3::X, 0.25), (DVec3::Y, 0.35)]), &params, &mut report);
+        account(&blended(0.9, &[(DVec3::Z, 0.4)]), &params, &mut report);
+        assert_eq!((figures(&report), report.figures["strips"]), ([0.75, 0.25, 3.0], 3.0));
+        let warnings = report.warnings.join("\n");
+        assert!(["[1, 0, 0]: one of radius 0.25", "0.35", "0.4"].iter().all(|w| warnings.contains(w)), "{warnings}");
     }
 }

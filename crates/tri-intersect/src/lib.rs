@@ -1,14 +1,21 @@
 //! Where triangle meshes meet: exact intersection tests, curves, cuts and booleans.
 //!
+//! Two surfaces are laid over each other and cut where they cross; pieces are kept or dropped to give the union,
+//! difference or intersection of the solids they bound. Only triangles that are crossed change, all others keep their
+//! bits, and every vertex and face of the result knows where it came from. The parts serve alone too: curves of
+//! intersection, curves embedded into a mesh, and the report of where a mesh meets itself.
+//!
 //! ```
-//! use glam::DVec3;
-//! use mesh_core::{Connected, Watch, shapes};
+//! use glam::{DQuat, DVec3};
+//! use mesh_core::{Connected, Watch, shapes, volume};
 //! use tri_intersect::{Operation, Params, boolean};
 //!
-//! let cube = Connected::new(shapes::cuboid(DVec3::splat(2.0)))?;
-//! let ball = Connected::new(shapes::icosphere(1.2, 3))?;
-//! let both = boolean(&cube, &ball, Operation::Union, &Params::default(), &Watch::default())?;
-//! assert_eq!(both.seams.len(), 6); // the ball looks out of every side of the cube
+//! let still = Connected::new(shapes::cuboid(DVec3::ONE))?;
+//! let moved = shapes::posed(shapes::cuboid(DVec3::ONE), DQuat::IDENTITY, DVec3::new(0.5, 0.25, 0.125));
+//! let both = boolean(&still, &Connected::new(moved)?, Operation::Union, &Params::default(), &Watch::default())?;
+//! let shared = 0.5 * 0.75 * 0.875;
+//! assert!((volume(&both.mesh) - (2.0 - shared)).abs() < 1e-14);
+//! assert_eq!(both.seams.len(), 1); // one closed curve around both
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -42,6 +49,7 @@
 //! | `classify.rs`, `inside.rs` | sides of the seam, the flood, and components that no seam passes |
 //! | `assemble.rs`, `check.rs` | the result with its origins, and its exact check |
 //! | `tidy.rs`, `pinch.rs`, `seam.rs` | short edges, contacts, seam curves |
+//! | `error.rs` | why a boolean is refused, and where |
 
 mod arrange;
 mod assemble;

@@ -3,7 +3,7 @@
 use crate::args::Blend as Args;
 use crate::failure::Failure;
 use crate::session::{Destination, Session, counts, joint_diagonal};
-use fusion::{blend, features, round};
+use fusion::{features, round};
 
 /// Blends the chosen curves and writes the result.
 pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
@@ -13,7 +13,7 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     let params = round::Params {
         features: features::Params { angle: args.angle, ..features::Params::default() },
         near: args.near.clone(),
-        blend: blend::Params::new(args.radius.resolve(joint_diagonal(models))),
+        blend: args.rolling.with_radius(args.radius.resolve(joint_diagonal(models))),
         format: destination.format,
     };
     let name = args.input.display();

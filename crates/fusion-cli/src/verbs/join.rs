@@ -3,14 +3,14 @@
 use crate::args::Join as Args;
 use crate::failure::Failure;
 use crate::session::{Destination, Session, counts, joint_diagonal};
-use fusion::{Error, Operation, blend, join};
+use fusion::{Error, Operation, join};
 
 /// Joins the inputs and writes the result.
 pub fn run(session: &Session, args: &Args, operation: Operation) -> Result<(), Failure> {
     let destination = Destination::check(&args.target, session)?;
     let models = session.read_all(&args.inputs, &args.source)?;
-    let radius = args.radius.map(|r| r.resolve(joint_diagonal(&models)));
-    let params = join::Params { operation, blend: radius.map(blend::Params::new), format: destination.format };
+    let blend = args.radius.map(|r| args.rolling.with_radius(r.resolve(joint_diagonal(&models))));
+    let params = join::Params { operation, blend, format: destination.format };
     let mut outcome = join(&models, &params, session.watch()).map_err(|e| explain(&e, args))?;
     let report = &mut outcome.report;
     report.command = match operation {

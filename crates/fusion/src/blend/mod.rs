@@ -19,7 +19,7 @@ use mesh_core::{Adjacency, Cancelled, Connected, FaceId, Faces, NotManifold, Ori
 use profile_nurbs::Profile;
 use rayon::prelude::*;
 use sew::{between, sew};
-use spine::{BlendCurve, Dip, RadiusField, Rail, Softening, roll};
+use spine::{BlendCurve, Dip, RadiusField, Rail, Softening, Solver, roll};
 use strip::{Fineness, sweep};
 use trouble::Trouble;
 
@@ -32,6 +32,8 @@ pub struct Params {
     pub profile: Profile,
     /// What to do where the ball does not fit.
     pub overlap: Overlap,
+    /// What finds the way of the ball's centre.
+    pub solver: Solver,
     /// Least reach of the base patches, as a multiple of the radius; see [`spine::Params::alpha`].
     pub alpha: f64,
     /// Largest sagitta of the blend's chords across, as a share of the radius.
@@ -51,7 +53,14 @@ pub enum Overlap {
 impl Params {
     /// An arc of radius `radius`, made smaller where it does not fit.
     pub fn new(radius: f64) -> Self {
-        Self { radius, profile: Profile::Arc, overlap: Overlap::default(), alpha: 1.75, tolerance: 0.005 }
+        Self {
+            radius,
+            profile: Profile::Arc,
+            overlap: Overlap::default(),
+            solver: Solver::Contact,
+            alpha: 1.75,
+            tolerance: 0.005,
+        }
     }
 }
 
@@ -212,6 +221,7 @@ fn roll_missing(
     let spine_params = spine::Params {
         radius: mends.radius.clone(),
         alpha: params.alpha,
+        solver: params.solver,
         step,
         softenings: mends.softenings.clone(),
         ..spine::Params::new(params.radius)

@@ -1,0 +1,188 @@
+//! What each option of a blend changes.
+
+mod support;
+
+use serde_json::Value;
+use std::f64::consts::{FRAC_PI_4, PI};
+use std::fmt::Write as _;
+use support::{Bench, Run};
+
+const RADIUS: f64 = 0.2;
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+/// A drum of radius 1 and height 2: both rims are closed feature curves.
+fn drum() -> String {
+    let n = 96;
+    let mut text = format!("OFF\n{} {} 0\n0 0 -1\n0 0 1\n", 2 * n + 2, 4 * n);
+    for z in [-1, 1] {
+        for i in 0..n {
+            let (sin, cos) = (2.0 * PI * f64::from(i) / f64::from(n)).sin_cos();
+            writeln!(text, "{cos:?} {sin:?} {z}").unwrap();
+        }
+    }
+    for i in 0..n {
+        let j = (i + 1) % n;
+        let [a, b, c, d] = [2 + i, 2 + j, 2 + n + j, 2 + n + i];
+        writeln!(text, "3 {a} {b} {c}\n3 {a} {c} {d}\n3 0 {b} {a}\n3 1 {d} {c}").unwrap();
+    }
+    text
+}
+
+/// A folder with the drum.
+fn bench() -> Bench {
+    let bench = Bench::new();
+    bench.file("drum.off", &drum());
+    bench
+}
+
+fn blend(bench: &Bench, options: &str) -> Run {
+    bench.run(&format!("blend drum.off -o out.off --radius {RADIUS} --report r.json {options}"))
+}
+
+fn volume(bench: &Bench, file: &str) -> f64 {
+    json(bench.run(&format!("info {file} --json")).expect(0).text())["volume"].as_f64().unwrap()
+}
+
+/// What a blend of both rims took away, and how many faces it left.
+fn taken(bench: &Bench, options: &str) -> (f64, u64) {
+    blend(bench, options).expect(0);
+    let faces = json(&bench.read("r.json"))["output"]["faces"].as_u64().unwrap();
+    (volume(bench, "drum.off") - volume(bench, "out.off"), faces)
+}
+
+/// Pappus: what is taken from a rim is its section's area times the way of the section's centroid. `moment` is the
+/// area's moment about the side of the drum, for a radius of 1.
+fn pappus(area: f64, moment: f64) -> f64 {
+    2.0 * 2.0 * PI * (area * RADIUS.powi(2) - moment * RADIUS.powi(3))
+}
+
+#[test]
+fn profiles_take_away_what_they_should() {
+    let bench = bench();
+    let take = |profile: &str| taken(&bench, &format!("--profile {profile}")).0;
+    let [chamfer, flat, arc, g2, bulging, sharp] = ["chamfer", "conic=0.5", "arc", "g2", "conic=2", "sharp"].map(take);
+    let near = |x: f64, truth: f64| (x / truth - 1.0).abs() < 0.01;
+    assert!(near(chamfer, pappus(0.5, 1.0 / 6.0)), "{chamfer}");
+    // The square less the quarter disc about its inner corner, whose centroid is 4 / 3π from there.
+    assert!(near(arc, pappus(1.0 - FRAC_PI_4, 0.5 - FRAC_PI_4 + 1.0 / 3.0)), "{arc}");
+    assert!(sharp.abs() < 0.01 * arc, "{sharp}");
+    assert!(chamfer > flat && flat > 1.1 * arc && arc > 1.1 * bulging && bulging > sharp, "{flat} {arc} {bulging}");
+    assert!(g2 < 0.99 * arc && g2 > bulging, "{g2}");
+    assert!((take("conic=1") / arc - 1.0).abs() < 1e-3);
+}
+
+/// A chamfer's vertices lie on the cone through both linkages.
+#[test]
+fn a_chamfer_is_flat_across() {
+    let bench = bench();
+    let off_the_cone = |profile: &str| {
+        blend(&bench, &format!("--profile {profile} --origins o.json")).expect(0);
+        let origins = json(&bench.read("o.json"));
+        let text = bench.read("out.off");
+        let made = text.lines().skip(2).zip(origins["vertices"].as_array().unwrap()).filter(|(_, o)| o[0] == "new");
+        let heights = made.map(|(line, _)| {
+            let p: Vec<f64> = line.split_whitespace().map(|x| x.parse().unwrap()).collect();
+            (p[0].hypot(p[1]) + p[2].abs() - (2.0 - RADIUS)).abs() / 2f64.sqrt()
+        });
+        heights.fold(0.0, f64::max)
+    };
+    assert!(off_the_cone("chamfer") < 0.01 * RADIUS);
+    // A quarter circle's middle stands 1 − √2 / 2 of the radius off its chord.
+    let arc = off_the_cone("arc");
+    assert!((arc / RADIUS - (1.0 - 0.5f64.sqrt())).abs() < 0.02, "{arc}");
+}
+
+#[test]
+fn a_finer_tolerance_gives_more_faces_nearer_to_the_arc() {
+    let bench = bench();
+    let (coarse, fine) = (taken(&bench, ""), taken(&bench, "--tolerance 2e-4"));
+    assert!(fine.1 > 2 * coarse.1, "{coarse:?} {fine:?}");
+    assert!((fine.0 / coarse.0 - 1.0).abs() < 0.02, "{coarse:?} {fine:?}");
+}
+
+/// Ten times the reach gives the ball more to look at, and nothing else to touch.
+#[test]
+fn a_longer_reach_changes_no_byte() {
+    let bench = bench();
+    blend(&bench, "").expect(0);
+    let plain = bench.read("out.off");
+    blend(&bench, "--alpha 4 --surface stitch").expect(0);
+    assert_eq!(bench.read("out.off"), plain);
+}
+
+#[test]
+fn the_offset_spine_is_near_and_the_contact_spine_exact() {
+    let bench = bench();
+    let run = |spine: &str| {
+        let taken = taken(&bench, &format!("--spine {spine}")).0;
+        (taken, json(&bench.read("r.json"))["residuals"]["contact"].as_f64().unwrap())
+    };
+    let (contact, offset) = (run("contact"), run("offset"));
+    assert!(contact.1 <= 1e-9 && offset.1 > 1e-9 && offset.1 < 0.01, "{contact:?} {offset:?}");
+    assert!((contact.0 / offset.0 - 1.0).abs() < 0.05, "{contact:?} {offset:?}");
+}
+
+/// A ball of 0.3 reaches beyond the boxes' short sides.
+#[test]
+fn a_ball_that_does_not_fit_shrinks_or_stops() {
+    let bench = bench();
+    let line = "union a.off b.off -o out.off --radius 0.3 --report r.json";
+    let run = bench.run(line).expect(0);
+    let report = json(&bench.read("r.json"));
+    let figure = |name: &str| report["figures"][name].as_f64().unwrap();
+    let warnings: Vec<&str> = report["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();
+    let shrunk = warnings.iter().filter(|w| w.contains("a ball of radius 0.3 does not fit near")).count();
+    assert!(shrunk > 0 && figure("shrunk_places") == shrunk as f64, "{warnings:?}");
+    assert!(warnings.iter().all(|w| run.stderr.contains(w)));
+    assert!((0.03..0.3).contains(&figure("smallest_radius")), "{}", figure("smallest_radius"));
+    let words = format!("radius {}", figure("smallest_radius"));
+    assert!(warnings.iter().any(|w| w.contains(&words)), "{words}: {warnings:?}");
+    assert!((0.0..1.0).contains(&figure("full_share")), "{}", figure("full_share"));
+
+    let bench = self::bench();
+    let run = bench.run(&format!("{line} --overlap error")).expect(4);
+    assert!(run.stderr.contains("with radius 0.3; a radius of 0.15 works"), "{}", run.stderr);
+    assert!(!bench.path("out.off").exists() && !bench.path("r.json").exists());
+    // What fits has nothing to say.
+    bench.run("union a.off b.off -o out.off --radius 0.1 --overlap error --report r.json").expect(0);
+    let figures = &json(&bench.read("r.json"))["figures"];
+    let values = ["full_share", "smallest_radius", "shrunk_places"].map(|f| figures[f].as_f64().unwrap());
+    assert_eq!(values, [1.0, 0.1, 0.0]);
+}
+
+#[test]
+fn wrong_options_say_what_is_right() {
+    let bench = bench();
+    for (options, words) in [
+        ("--profile round", "conic=W"),
+        ("--profile curve.json", "conic=W"),
+        ("--profile conic=-1", "conic=W"),
+        ("--surface keep", "stitch is what this version has"),
+        ("--surface auto", "stitch is what this version has"),
+        ("--spine paper", "offset"),
+        ("--overlap trim", "shrink"),
+        ("--alpha 0", "from 1 to 16"),
+        ("--tolerance 0", "from 1e-6 to 0.5"),
+        ("--tolerance nan", "from 1e-6 to 0.5"),
+    ] {
+        let run = blend(&bench, options).expect(2);
+        assert!(run.stderr.contains(words), "{options}: {}", run.stderr);
+        assert!(!bench.path("out.off").exists());
+    }
+}
+
+#[test]
+fn blend_options_need_a_radius() {
+    let bench = bench();
+    for options in
+        ["--profile arc", "--overlap shrink", "--spine offset", "--surface stitch", "--alpha 2", "--tolerance 0.01"]
+    {
+        for verb in ["union", "difference", "intersection"] {
+            let run = bench.run(&format!("{verb} a.off b.off -o out.off {options}")).expect(2);
+            assert!(run.stderr.contains("--radius"), "{options}: {}", run.stderr);
+        }
+    }
+}
