@@ -11,12 +11,10 @@ pub struct Rolling {
     /// that of the arc (below 1 flatter, above 1 sharper)
     #[arg(long, value_name = "PROFILE", default_value = "arc", value_parser = profile, requires = "radius")]
     pub profile: Profile,
-    /// Where a full-size ball does not fit: use a smaller one there, fading into the full one, and say in a warning and
-    /// the report where and how small; or stop with an error
+    /// What to do where a full-size ball does not fit
     #[arg(long, value_enum, default_value_t = Overlap::Shrink, requires = "radius")]
     pub overlap: Overlap,
-    /// What finds the way of the ball's centre: Newton on closest points, exact on the mesh; or the crossing of the two
-    /// sides moved by the radius, off by the sagitta of the facets
+    /// What finds the way of the ball's centre
     #[arg(long, value_enum, default_value_t = Spine::Contact, requires = "radius")]
     pub spine: Spine,
     /// How the surface is put in; this version has `stitch`: cut along the ball's contact curves and sew in the sweep
@@ -54,7 +52,7 @@ impl Rolling {
 /// What to do where the ball does not fit.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Overlap {
-    /// A smaller ball there
+    /// Use a smaller ball there, fading into the full one; warnings and the report say where and how small
     Shrink,
     /// Stop, naming the place and a radius that works
     Error,
@@ -63,9 +61,9 @@ pub enum Overlap {
 /// What finds the spine.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Spine {
-    /// Newton on closest points
+    /// Newton on closest points, exact on the mesh
     Contact,
-    /// The crossing of the offset sides
+    /// The crossing of the two sides moved by the radius, off by the sagitta of the facets
     Offset,
 }
 

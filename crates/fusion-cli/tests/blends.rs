@@ -2,6 +2,8 @@
 
 mod support;
 
+use fusion::mesh_core::shapes;
+use glam::{DQuat, DVec3};
 use serde_json::Value;
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::fmt::Write as _;
@@ -66,8 +68,6 @@ fn profiles_take_away_what_they_should() {
     let [chamfer, flat, arc, g2, bulging, sharp] = ["chamfer", "conic=0.5", "arc", "g2", "conic=2", "sharp"].map(take);
     let near = |x: f64, truth: f64| (x / truth - 1.0).abs() < 0.01;
     assert!(near(chamfer, pappus(0.5, 1.0 / 6.0)), "{chamfer}");
-    // The square less the quarter disc about its inner corner, whose centroid is 4 / 3π from there.
-    assert!(near(arc, pappus(1.0 - FRAC_PI_4, 0.5 - FRAC_PI_4 + 1.0 / 3.0)), "{arc}");
     assert!(sharp.abs() < 0.01 * arc, "{sharp}");
     assert!(chamfer > flat && flat > 1.1 * arc && arc > 1.1 * bulging && bulging > sharp, "{flat} {arc} {bulging}");
     assert!(g2 < 0.99 * arc && g2 > bulging, "{g2}");
@@ -100,7 +100,10 @@ fn a_finer_tolerance_gives_more_faces_nearer_to_the_arc() {
     let bench = bench();
     let (coarse, fine) = (taken(&bench, ""), taken(&bench, "--tolerance 2e-4"));
     assert!(fine.1 > 2 * coarse.1, "{coarse:?} {fine:?}");
-    assert!((fine.0 / coarse.0 - 1.0).abs() < 0.02, "{coarse:?} {fine:?}");
+    // The square less the quarter disc about its inner corner, whose centroid is 4 / 3π from there.
+    let truth = pappus(1.0 - FRAC_PI_4, 0.5 - FRAC_PI_4 + 1.0 / 3.0);
+    let [coarse, fine] = [coarse.0, fine.0].map(|taken| taken / truth - 1.0);
+    assert!((0.01..0.04).contains(&coarse) && fine.abs() < 0.01, "{coarse} {fine}");
 }
 
 /// Ten times the reach gives the ball more to look at, and nothing else to touch.
@@ -113,16 +116,23 @@ fn a_longer_reach_changes_no_byte() {
     assert_eq!(bench.read("out.off"), plain);
 }
 
+/// On balls the offset facets are off by their sagitta, and the exact contact is not.
 #[test]
 fn the_offset_spine_is_near_and_the_contact_spine_exact() {
     let bench = bench();
+    for (name, x, radius) in [("big.ply", 0.0, 1.0), ("small.ply", 1.1, 0.6)] {
+        let ball = shapes::posed(shapes::icosphere(radius, 4), DQuat::IDENTITY, DVec3::new(x, 0.02, 0.03));
+        mesh_io::write(&ball.into(), &bench.path(name)).unwrap();
+    }
     let run = |spine: &str| {
-        let taken = taken(&bench, &format!("--spine {spine}")).0;
-        (taken, json(&bench.read("r.json"))["residuals"]["contact"].as_f64().unwrap())
+        bench
+            .run(&format!("union big.ply small.ply -o out.off --radius 0.1 --report r.json --spine {spine}"))
+            .expect(0);
+        (volume(&bench, "out.off"), json(&bench.read("r.json"))["residuals"]["contact"].as_f64().unwrap())
     };
     let (contact, offset) = (run("contact"), run("offset"));
-    assert!(contact.1 <= 1e-9 && offset.1 > 1e-9 && offset.1 < 0.01, "{contact:?} {offset:?}");
-    assert!((contact.0 / offset.0 - 1.0).abs() < 0.05, "{contact:?} {offset:?}");
+    assert!(contact.1 <= 1e-9 && (1e-6..0.1).contains(&offset.1), "{contact:?} {offset:?}");
+    assert!((contact.0 / offset.0 - 1.0).abs() < 1e-3 && contact.0 != offset.0, "{contact:?} {offset:?}");
 }
 
 /// A ball of 0.3 reaches beyond the boxes' short sides.
