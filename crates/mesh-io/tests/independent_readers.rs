@@ -73,8 +73,14 @@ fn tobj_reads_texture_coordinates_and_normals_of_our_obj() {
     assert_eq!(read_normals.collect::<Vec<_>>(), normals);
 }
 
-/// Positions and indices of the only primitive.
-fn read_by_gltf(model: &Model) -> (Vec<[f32; 3]>, Vec<u32>, Option<Vec<[f32; 2]>>) {
+/// The only primitive of a file.
+struct Primitive {
+    positions: Vec<[f32; 3]>,
+    indices: Vec<u32>,
+    uvs: Option<Vec<[f32; 2]>>,
+}
+
+fn read_by_gltf(model: &Model) -> Primitive {
     let gltf::Gltf { document, blob } = gltf::Gltf::from_slice(&to_bytes(model, Format::Glb).unwrap()).unwrap();
     let blob = blob.expect("a GLB holds its buffer");
     let primitives: Vec<_> = document.meshes().flat_map(|m| m.primitives().collect::<Vec<_>>()).collect();
@@ -87,13 +93,13 @@ fn read_by_gltf(model: &Model) -> (Vec<[f32; 3]>, Vec<u32>, Option<Vec<[f32; 2]>
     let fold = |f: fn(Vec3, Vec3) -> Vec3| positions.iter().map(|&p| Vec3::from(p)).reduce(f).unwrap().to_array();
     assert_eq!((bounds.min, bounds.max), (fold(Vec3::min), fold(Vec3::max)));
     let uvs = reader.read_tex_coords(0).map(|uvs| uvs.into_f32().collect());
-    (positions, reader.read_indices().unwrap().into_u32().collect(), uvs)
+    Primitive { indices: reader.read_indices().unwrap().into_u32().collect(), positions, uvs }
 }
 
 #[test]
 fn gltf_reads_the_positions_and_indices_of_our_glb() {
     for mesh in [shapes::cuboid(DVec3::new(0.1, 2.0, 3e7)), shapes::icosphere(1.0 / 3.0, 3), shapes::teapot(4).body] {
-        let (positions, indices, _) = read_by_gltf(&Model::from(mesh.clone()));
+        let Primitive { positions, indices, .. } = read_by_gltf(&Model::from(mesh.clone()));
         let expected: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.as_vec3().to_array()).collect();
         assert_eq!(positions, expected);
         assert_eq!(indices, mesh.faces.iter().flatten().map(|v| v.0).collect::<Vec<_>>());
@@ -106,7 +112,7 @@ fn gltf_reads_the_texture_coordinates_of_our_glb() {
     let mut model = Model::from(shapes::cuboid(DVec3::ONE));
     let uvs: Vec<[f64; 2]> = (0..36).map(|h| [f64::from(h % 5) / 4.0, f64::from(h % 7) / 8.0]).collect();
     model.uvs = Some(CornerMap::from(uvs.clone()));
-    let (positions, indices, read) = read_by_gltf(&model);
+    let Primitive { positions, indices, uvs: read } = read_by_gltf(&model);
     let read = read.expect("texture coordinates are written");
     assert_eq!(indices.len(), 36);
     for (h, &i) in indices.iter().enumerate() {
