@@ -132,9 +132,11 @@ fn fill_jumps<M: Adjacency + Positions>(
     let between = |here: &Sample, next: &Sample, t: f64| {
         let walked = walk(mesh, patches, here, next, t)?;
         let known = walked.feet.map(|f| f.point);
+        // Feet that only move fast come out near the straight line; those that jump stay at one of its ends.
+        let astray = (0.25 * gap).max(0.15 * here.advance(next));
         let seated = Contact::seat(mesh, patches, radius, walked.center, Some(known)).filter(|ball| {
-            ball.center.distance(walked.center) < 0.25 * gap
-                && (0..2).all(|s| ball.feet[s].point.distance(known[s]) < 0.25 * gap)
+            ball.center.distance(walked.center) < astray
+                && (0..2).all(|s| ball.feet[s].point.distance(known[s]) < astray)
         });
         if let Some(ball) = seated {
             residual = residual.max(ball.residual);
