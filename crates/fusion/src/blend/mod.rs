@@ -172,7 +172,7 @@ fn attempt(
     watch: &Watch,
 ) -> Result<Blended, Trouble> {
     let mut mends = Mends::new(params.radius);
-    let step = step_length(mesh, curves, params.radius);
+    let step = step_length(mesh, curves, params);
     let mut rails: Vec<Option<Rail>> = curves.iter().map(|_| None).collect();
     for round in 0.. {
         watch.step("blend", round as f64 / rounds as f64)?;
@@ -198,8 +198,11 @@ fn attempt(
     Err(Trouble::at("the blend does not settle", vec![]))
 }
 
-/// Chord length along and across: matched to the input's edges, within a tenth and a quarter of the radius.
-fn step_length(mesh: &Connected<TriMesh>, curves: &[BlendCurve], radius: f64) -> f64 {
+/// Chord length along and across: matched to the input's edges, within one and two tenths of the radius, or less where
+/// the tolerance asks for it.
+fn step_length(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params) -> f64 {
+    // An arc of radius r has the sagitta s on a chord of √(8·s·r); 0.005·r is that of 0.2·r.
+    let widest = params.radius * (8.0 * params.tolerance.clamp(1e-6, 0.005)).sqrt();
     let mut edges: Vec<f64> = curves
         .iter()
         .flat_map(|c| &c.halfedges)
@@ -207,7 +210,7 @@ fn step_length(mesh: &Connected<TriMesh>, curves: &[BlendCurve], radius: f64) ->
         .map(|h| mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h))))
         .collect();
     edges.sort_by(f64::total_cmp);
-    edges.get(edges.len() * 3 / 4).map_or(0.2 * radius, |&e| (1.2 * e).clamp(0.1 * radius, 0.2 * radius))
+    edges.get(edges.len() * 3 / 4).map_or(widest, |&e| (1.2 * e).clamp(0.5 * widest, widest))
 }
 
 fn roll_missing(
@@ -237,7 +240,14 @@ fn roll_missing(
             None => {}
             Some(Ok(r)) => *rail = Some(r),
             Some(Err(e)) => match (&e, e.place()) {
-                (spine::Error::NoStart { .. } | spine::Error::Stuck { .. } | spine::Error::Astray { .. }, Some(at)) => {
+                (
+                    spine::Error::NoStart { .. }
+                    | spine::Error::Stuck { .. }
+                    | spine::Error::Astray { .. }
+                    | spine::Error::NoLoop { .. }
+                    | spine::Error::Folded { .. },
+                    Some(at),
+                ) => {
                     places.push(at);
                 }
                 _ => return Err(Trouble::Spine(e)),
