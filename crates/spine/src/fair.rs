@@ -132,16 +132,15 @@ fn fill_jumps<M: Adjacency + Positions>(
     let between = |here: &Sample, next: &Sample, t: f64| {
         let walked = walk(mesh, patches, here, next, t)?;
         let known = walked.feet.map(|f| f.point);
-        // Feet that only move fast come out near the straight line; those that jump stay at one of its ends.
-        let astray = (0.25 * gap).max(0.15 * here.advance(next));
-        let seated = Contact::seat(mesh, patches, radius, walked.center, Some(known)).filter(|ball| {
-            ball.center.distance(walked.center) < astray
-                && (0..2).all(|s| ball.feet[s].point.distance(known[s]) < astray)
-        });
-        if let Some(ball) = seated {
-            residual = residual.max(ball.residual);
-        }
-        Some(seated.map_or(walked, Sample::from))
+        let near = |p: DVec3, q: DVec3| p.distance(q) < 0.25 * gap;
+        let ball =
+            Contact::seat(mesh, patches, radius, walked.center, Some(known)).filter(|b| near(b.center, walked.center));
+        let Some(ball) = ball else { return Some(walked) };
+        residual = residual.max(ball.residual);
+        // Where a foot jumps, the seated ball's stays at one end of the jump: the walked one is kept.
+        let jumped = (0..2).any(|s| !near(ball.feet[s].point, known[s]));
+        let feet = if jumped { walked.feet } else { ball.feet };
+        Some(Sample { center: ball.center, radius: ball.radius, feet })
     };
     let samples: Vec<Sample> = contacts.iter().copied().map(Sample::from).collect();
     let filled = subdivide(&samples, gap, between);
