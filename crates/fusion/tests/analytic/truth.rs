@@ -53,7 +53,6 @@ impl Spine {
                     DVec3::new(mirror * (b * b - a * a * cos * cos).max(0.0).sqrt(), a * cos, a * sin)
                 };
                 let gap = |t: f64| at(t).distance_squared(p);
-                const COARSE: u32 = 256;
                 let step = TAU / f64::from(COARSE);
                 let best = (0..COARSE)
                     .map(|i| step * f64::from(i))
@@ -121,3 +120,6 @@ impl Truth {
         self.shapes[part].distance(self.pose.inverse().transform_point3(world)).0
     }
 }
+
+/// Samples of a spine before the nearest is polished.
+const COARSE: u32 = 256;
