@@ -41,13 +41,13 @@ impl Joined {
     }
 
     /// A vertex that is no input vertex must lie near the seam, so near two parts at once: a point of a fillet is
-    /// within a diameter of both.
+    /// within a diameter of both, and a linkage that walks through a dent which the ball spans, within two.
     fn strangers(&self, parts: &[TriMesh], radius: f64) -> Option<String> {
         let bits = |p: &DVec3| p.to_array().map(f64::to_bits);
         let known: HashSet<_> = parts.iter().flat_map(|m| &m.positions).map(bits).collect();
         let trees: Vec<_> = parts.iter().filter_map(|m| Some((m, TriBvh::build(m).ok()?))).collect();
         let size = mesh_core::bounds(&self.mesh).diagonal();
-        let reach = 2.0 * radius + 1e-9 * size;
+        let reach = 4.0 * radius + 1e-9 * size;
         let far = self.mesh.positions.iter().filter(|p| !known.contains(&bits(p))).find(|&&p| {
             let near = |(m, tree): &&(&TriMesh, TriBvh)| tree.closest_point(*m, p).is_some_and(|c| c.distance <= reach);
             trees.iter().filter(near).count() < 2
