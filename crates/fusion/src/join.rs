@@ -1,6 +1,6 @@
 //! Joins solids, and blends the seams where asked: from the contents of files to what a file will hold.
 
-use crate::outcome::{Outcome, account, finish};
+use crate::outcome::{Outcome, account, finish, surviving};
 use crate::{Counts, Error, Invalid, Report, blend};
 use mesh_core::{Connected, Faces, Origins, Stage, TriMesh, Watch};
 use mesh_io::{Format, Model};
@@ -23,6 +23,15 @@ pub struct Params {
 /// # Errors
 /// [`Error`]; a radius that does not fit comes with a place and a radius that does.
 pub fn join(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcome, Error> {
+    surviving(params.blend.as_ref(), |blend| overlay_all(parts, params, blend, watch))
+}
+
+fn overlay_all(
+    parts: &[Model],
+    params: &Params,
+    blend: Option<&blend::Params>,
+    watch: &Watch,
+) -> Result<Outcome, Error> {
     let first: Vec<&dyn Faces> = parts.iter().map(|m| &m.mesh as &dyn Faces).collect();
     let mut report = Report::new("join", parts.iter().map(|m| Counts::of("", &m.mesh)).collect());
     let mut solids = report.time("connect", || connect(parts))?.into_iter();
@@ -32,7 +41,7 @@ pub fn join(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcome, 
         let cut = overlay(&whole, &solid, step, params, &mut report, watch)?;
         let origins = cut.origins.compose(&[whole.stage(), solid.stage()], &first);
         whole = Solid::new(cut.mesh, origins)?;
-        if let Some(blend) = &params.blend {
+        if let Some(blend) = blend {
             let curves = cut.seams.iter().map(|s| BlendCurve::from_vertices(&whole.mesh, &s.vertices));
             whole = round(&whole, &curves.collect::<Result<Vec<_>, _>>()?, blend, &first, &mut report, watch)?;
         }

@@ -2,7 +2,7 @@
 
 use crate::blend::{self, Blended};
 use crate::validity::as_written;
-use crate::{Error, Report, carry};
+use crate::{Error, Invalid, Report, carry};
 use mesh_core::{Origins, TriMesh, Watch};
 use mesh_io::{Format, Model};
 
@@ -31,6 +31,30 @@ pub(crate) fn finish(
     report.validity = report.time("validate", || as_written(&model, &origins, format, watch))?;
     Ok(Outcome { model, origins, report })
 }
+
+/// Does a job, and where the 32-bit coordinates of its file would fold slivers beside the blend, does it again with the
+/// linkages moved farther to spare them.
+pub(crate) fn surviving(
+    blend: Option<&blend::Params>,
+    job: impl Fn(Option<&blend::Params>) -> Result<Outcome, Error>,
+) -> Result<Outcome, Error> {
+    let mut result = job(blend);
+    for snap in SNAPS {
+        let (Some(blend), Err(Error::Invalid(Invalid { format: Some(_), .. }))) = (blend, &result) else { break };
+        let coarser = blend::Params { snap, ..blend.clone() };
+        result = job(Some(&coarser)).map(|mut outcome| {
+            outcome.report.warnings.push(format!(
+                "the linkages were moved by up to {} of the radius onto edges and vertices, to survive 32-bit coordinates",
+                snap
+            ));
+            outcome
+        });
+    }
+    result
+}
+
+/// Shares of the radius by which linkages may be moved when the first attempt does not survive rounding.
+const SNAPS: [f64; 2] = [5e-3, 2e-2];
 
 /// Notes in the report what a blend did.
 pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Report) {

@@ -1,7 +1,7 @@
 //! Rounds the feature curves of one mesh.
 
 use crate::features::{self, FeatureCurve, feature_curves, nearest_curve};
-use crate::outcome::{Outcome, account, finish};
+use crate::outcome::{Outcome, account, finish, surviving};
 use crate::{Counts, Error, Report, blend};
 use glam::DVec3;
 use mesh_core::{Connected, Positions, TriMesh, VertexId, Watch};
@@ -26,14 +26,18 @@ pub struct Params {
 /// # Errors
 /// [`Error`]; a radius that does not fit comes with a place and a radius that does.
 pub fn round(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, Error> {
+    surviving(Some(&params.blend), |blend| round_once(part, params, blend.unwrap_or(&params.blend), watch))
+}
+
+fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch) -> Result<Outcome, Error> {
     let mut report = Report::new("blend", vec![Counts::of("", &part.mesh)]);
     let mesh = report
         .time("connect", || Connected::new(part.mesh.clone()))
         .map_err(|source| Error::NotManifold { part: 0, source })?;
     let curves = report.time("features", || choose(&mesh, params))?;
     report.figures.insert("curves".into(), curves.len() as f64);
-    let blended = report.time("blend", || blend::blend(&mesh, &curves, &params.blend, watch))?;
-    account(&blended, &params.blend, &mut report);
+    let blended = report.time("blend", || blend::blend(&mesh, &curves, how, watch))?;
+    account(&blended, how, &mut report);
     finish(std::slice::from_ref(part), blended.mesh, blended.origins, params.format, report, watch)
 }
 

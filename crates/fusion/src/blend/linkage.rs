@@ -37,11 +37,12 @@ pub(crate) struct Opened {
     pub linkages: Vec<[Linkage; 2]>,
 }
 
-/// Cuts both linkages of every rail into the mesh. Their points move at most `reach` to spare slivers.
+/// Cuts both linkages of every rail into the mesh. Their points move at most `snap` radii to spare slivers.
 pub(crate) fn cut_linkages<M: Adjacency + Positions + Sync>(
     mesh: &M,
     rails: &[&Rail],
-    reach: f64,
+    snap: f64,
+    radius: f64,
     watch: &Watch,
 ) -> Result<Opened, Trouble> {
     let mut curves = Vec::new();
@@ -67,17 +68,18 @@ pub(crate) fn cut_linkages<M: Adjacency + Positions + Sync>(
         }
     }
     let embedded =
-        embed(mesh, &curves, &EmbedParams { reach, ..EmbedParams::default() }, watch).map_err(|e| match e {
-            EmbedError::Crossings(found) => Trouble::at("linkages cross", found.iter().map(|c| c.place).collect()),
-            EmbedError::Apart { place, .. } | EmbedError::TooSmall { place, .. } => {
-                Trouble::at("a linkage cannot be cut into the mesh", vec![place])
-            }
-            EmbedError::Collapsed { curve } => {
-                Trouble::at("a linkage shrinks to a point", vec![rails[curve / 2].samples[0].center])
-            }
-            EmbedError::Cancelled(c) => Trouble::Cancelled(c),
-            e @ (EmbedError::BadPoint { .. } | EmbedError::TooMany) => Trouble::Embed(e),
-        })?;
+        embed(mesh, &curves, &EmbedParams { snap: (2.5 * snap).clamp(0.01, 0.1), reach: snap * radius }, watch)
+            .map_err(|e| match e {
+                EmbedError::Crossings(found) => Trouble::at("linkages cross", found.iter().map(|c| c.place).collect()),
+                EmbedError::Apart { place, .. } | EmbedError::TooSmall { place, .. } => {
+                    Trouble::at("a linkage cannot be cut into the mesh", vec![place])
+                }
+                EmbedError::Collapsed { curve } => {
+                    Trouble::at("a linkage shrinks to a point", vec![rails[curve / 2].samples[0].center])
+                }
+                EmbedError::Cancelled(c) => Trouble::Cancelled(c),
+                e @ (EmbedError::BadPoint { .. } | EmbedError::TooMany) => Trouble::Embed(e),
+            })?;
     let mut sides = (0..curves.len()).map(|c| {
         let mut chain = embedded.curves[c].clone();
         let places: Vec<usize> = feet[c].iter().map(|&p| embedded.places[c][p]).collect();
