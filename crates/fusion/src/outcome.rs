@@ -44,8 +44,7 @@ pub(crate) fn surviving(
         let coarser = blend::Params { snap, ..blend.clone() };
         result = job(Some(&coarser)).map(|mut outcome| {
             outcome.report.warnings.push(format!(
-                "the linkages were moved by up to {} of the radius onto edges and vertices, to survive 32-bit coordinates",
-                snap
+                "the linkages were moved by up to {snap} of the radius onto edges and vertices, to survive 32-bit coordinates"
             ));
             outcome
         });
