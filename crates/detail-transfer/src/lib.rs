@@ -1,0 +1,1 @@
+//! Geometry detail carried from one region of a surface to another.

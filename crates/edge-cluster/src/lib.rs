@@ -1,0 +1,1 @@
+//! Edge clusters of polyhedra blended by tensor-product and S-patches.

@@ -1,0 +1,1 @@
+//! Localized marching cubes of any scalar field between given loops, welded to them.

@@ -1,0 +1,1 @@
+//! Fixed-boundary conformal maps of rings and discs of triangles.

@@ -1,0 +1,1 @@
+//! Variational implicit functions: radial basis fits with position and gradient constraints.

@@ -1,0 +1,1 @@
+//! Area-equalizing remeshing, smoothing and fairing with frozen boundaries and features.
