@@ -24,6 +24,7 @@
 //! | `profile.rs` | `Profile`: arc, chamfer, conic, sharp, Hermite, G2, custom, as a curve |
 //! | `sample.rs` | evenly spaced points on a profile, without allocation |
 //! | `sweep.rs` | `Sweep`: the ruled surface S(t, u) through a row of curves |
+//! | `tensor.rs` | `TensorBezier`: tensor-product Bézier patches with derivatives |
 //! | `error.rs` | what can be wrong with the numbers given |
 
 mod error;
@@ -33,9 +34,11 @@ mod refine;
 mod sample;
 mod section;
 mod sweep;
+mod tensor;
 
 pub use error::Error;
 pub use nurbs::Nurbs;
 pub use profile::Profile;
 pub use section::Section;
 pub use sweep::{Sweep, SweepPoint};
+pub use tensor::{SurfaceJet, TensorBezier};

@@ -1,0 +1,72 @@
+//! The whole blend: laid out, meshed, and shortened where blends meet within a face.
+
+use crate::error::Error;
+use crate::layout::{Layout, Params, Spec};
+use crate::polyhedron::Polyhedron;
+use crate::weave::{Woven, weave};
+use mesh_core::Watch;
+
+/// A blended polyhedron with all that it was made from.
+#[derive(Clone, Debug)]
+pub struct Blend {
+    /// Patches and strips.
+    pub layout: Layout,
+    /// The mesh.
+    pub woven: Woven,
+    /// For each halfedge, by what its reach was multiplied so that blends do not meet within a face; 1 where nothing had
+    /// to be shortened.
+    pub shrink: Vec<f64>,
+}
+
+/// How much reaches shorten at a time, and how often at most: down to a fiftieth.
+const SHORTER: f64 = 0.85;
+const ROUNDS: usize = 24;
+/// How much they shorten once more, when they fit.
+const MARGIN: f64 = 0.85;
+
+/// Blends clusters of a polyhedron into one watertight mesh with chords within `tolerance`, in model units. Where blends
+/// meet within a planar face, all that reach into it are shortened. `shorten` multiplies every reach before.
+///
+/// # Errors
+/// [`Error`]; [`Error::Crowded`] where shortening does not help.
+pub fn blend(
+    solid: &Polyhedron,
+    specs: &[Spec],
+    params: &Params,
+    tolerance: f64,
+    shorten: f64,
+    watch: &Watch,
+) -> Result<Blend, Error> {
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        return Err(Error::Range { name: "tolerance", value: tolerance, range: "(0, ∞)" });
+    }
+    // Finer than this, a mesh would have more triangles than ids.
+    let tolerance = tolerance.max(1e-8 * solid.size);
+    let mut shrink = vec![shorten; solid.halfedges.len()];
+    let (mut crowded, mut spaced) = (vec![], false);
+    for round in 0..ROUNDS {
+        watch.step("layout", round as f64 / ROUNDS as f64)?;
+        let layout = Layout::new(solid, specs, params, &shrink)?;
+        let woven = weave(solid, &layout, tolerance, watch)?;
+        if woven.crowded.is_empty() {
+            if crowded.is_empty() || spaced {
+                return Ok(Blend { layout, woven, shrink });
+            }
+            // They fit now; leave some of the face between them.
+            shrink.iter_mut().filter(|s| **s < shorten).for_each(|s| *s *= MARGIN);
+            spaced = true;
+            continue;
+        }
+        crowded = woven.crowded;
+        let mut shorter = vec![false; shrink.len()];
+        for &(face, _) in &crowded {
+            for h in solid.face_halfedges(face) {
+                shorter[h as usize] = true;
+                shorter[solid.halfedges[h as usize].twin as usize] = true;
+            }
+        }
+        shrink.iter_mut().zip(shorter).filter(|s| s.1).for_each(|(s, _)| *s *= SHORTER);
+    }
+    let (face, at) = crowded[0];
+    Err(Error::Crowded { face: face as usize, at })
+}
