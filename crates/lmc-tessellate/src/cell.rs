@@ -226,7 +226,8 @@ mod tests {
     fn check(v: &[f64; 8]) -> Result<(), String> {
         let c = contours(v);
         let surfaces: std::collections::BTreeSet<u8> = c.surfaces.iter().copied().collect();
-        if surfaces.iter().any(|s| c.surfaces.iter().filter(|t| *t == s).count() > 2) {
+        let bounds = |s: u8| c.surfaces.iter().map(|&t| u8::from(t == s)).sum::<u8>();
+        if surfaces.iter().any(|&s| bounds(s) > 2) {
             return Err(format!("three curves bound one surface: {v:?} {c:?}"));
         }
         // Coarse samples may miss thin necks; finer ones decide.
@@ -247,7 +248,7 @@ mod tests {
         }
         for f in 0..6 {
             let c = face_corners(f);
-            assert!((0..4).all(|i| c[i] >> (f / 2) & 1 == f % 2 && (c[i] ^ c[(i + 1) % 4]).count_ones() == 1));
+            assert!((0..4).all(|i| c[i] >> (f / 2) & 1 == f % 2 && (c[i] ^ c[(i + 1) % 4]).is_power_of_two()));
         }
     }
 

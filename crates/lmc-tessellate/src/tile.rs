@@ -167,9 +167,8 @@ mod tests {
                 let mut points: Vec<u8> = made.triangles.concat();
                 points.sort_unstable();
                 points.dedup();
-                let discs = (0..found.curves.len())
-                    .filter(|&i| found.surfaces.iter().filter(|&&s| s == found.surfaces[i]).count() == 1)
-                    .count();
+                let alone = |s: u8| found.surfaces.iter().map(|&t| u8::from(t == s)).sum::<u8>() == 1;
+                let discs = found.surfaces.iter().map(|&s| usize::from(alone(s))).sum::<usize>();
                 let undirected = usize::midpoint(edges.len(), open.len());
                 assert_eq!(points.len() + made.triangles.len() - undirected, discs);
                 tunnels += usize::from(discs < found.curves.len());

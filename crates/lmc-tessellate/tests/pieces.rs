@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use lmc_tessellate::{Error, Params, Rim, Transition, suggested_cell, tessellate};
-use mesh_core::{Adjacency, Connected, Faces, TriMesh, VertexId, Watch, boundary_loops, shapes, topology, volume};
+use mesh_core::{Connected, Faces, TriMesh, VertexId, Watch, boundary_loops, shapes, topology, volume};
 
 /// The faces whose centroid passes.
 fn part(mesh: &TriMesh, keep: impl Fn(DVec3) -> bool) -> Connected<TriMesh> {
