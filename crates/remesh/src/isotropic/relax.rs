@@ -1,0 +1,176 @@
+//! Tangential relaxation towards equal areas.
+
+use super::state::{Kind, State, cross, keeps_side};
+use super::table::{NONE, Table};
+use glam::DVec3;
+use mesh_core::EditObserver;
+use rayon::prelude::*;
+
+/// The vertices that move, their neighbours in order, and the areas of those that stay.
+pub(crate) struct Rings {
+    /// Vertices that move, by id.
+    pub moving: Vec<u32>,
+    /// Where each mover's neighbours begin in `neighbours`.
+    starts: Vec<u32>,
+    neighbours: Vec<u32>,
+}
+
+/// Movers per parallel task.
+const CHUNK: usize = 1024;
+
+impl Rings {
+    pub fn of(table: &Table, kinds: &[Kind]) -> Self {
+        let moving: Vec<u32> = (0..table.vertex_count())
+            .filter(|&v| kinds[v as usize] == Kind::Free && table.out[v as usize] != NONE)
+            .collect();
+        let mut starts = vec![0];
+        starts.reserve(moving.len());
+        let mut end = 0;
+        for &v in &moving {
+            end += table.valence[v as usize];
+            starts.push(end);
+        }
+        let mut neighbours = vec![0; end as usize];
+        // Cut at mover boundaries, so that every task writes its own piece.
+        let mut pieces = vec![];
+        let mut rest = &mut neighbours[..];
+        for (i, chunk) in moving.chunks(CHUNK).enumerate() {
+            let first = starts[i * CHUNK];
+            let (piece, after) = rest.split_at_mut((starts[i * CHUNK + chunk.len()] - first) as usize);
+            pieces.push((chunk, piece));
+            rest = after;
+        }
+        pieces.into_par_iter().for_each(|(chunk, piece)| {
+            let mut k = 0;
+            for &v in chunk {
+                for h in table.ring(v) {
+                    piece[k] = table.head(h);
+                    k += 1;
+                }
+            }
+        });
+        Self { moving, starts, neighbours }
+    }
+
+    fn ring(&self, i: usize) -> &[u32] {
+        &self.neighbours[self.starts[i] as usize..self.starts[i + 1] as usize]
+    }
+
+    /// Area vector of the fan around mover `i`, and its area.
+    fn fan(&self, i: usize, points: &[DVec3]) -> (DVec3, f64) {
+        let p = points[self.moving[i] as usize];
+        let ring = self.ring(i);
+        let Some(&last) = ring.last() else { return (DVec3::ZERO, 0.0) };
+        let (mut before, mut sum, mut area) = (points[last as usize] - p, DVec3::ZERO, 0.0);
+        for &n in ring {
+            let here = points[n as usize] - p;
+            let face = before.cross(here);
+            sum += face;
+            area += face.length();
+            before = here;
+        }
+        (sum, area)
+    }
+
+    /// Moves every mover `steps` times the share `lambda` of the way to the mean of its neighbours, weighted by their
+    /// areas over their wanted areas, within its tangent plane.
+    pub fn relax(&self, points: &mut [DVec3], areas: &mut [f64], sizes: &[f64], steps: usize, lambda: f64) {
+        let mut fans: Vec<(DVec3, f64)> = vec![];
+        let mut moved: Vec<DVec3> = vec![];
+        for _ in 0..steps {
+            (0..self.moving.len())
+                .into_par_iter()
+                .with_min_len(CHUNK)
+                .map(|i| self.fan(i, points))
+                .collect_into_vec(&mut fans);
+            for (&v, fan) in self.moving.iter().zip(&fans) {
+                areas[v as usize] = fan.1 / (sizes[v as usize] * sizes[v as usize]);
+            }
+            let areas = &*areas;
+            (0..self.moving.len())
+                .into_par_iter()
+                .with_min_len(CHUNK)
+                .map(|i| {
+                    let p = points[self.moving[i] as usize];
+                    let (mut sum, mut total) = (DVec3::ZERO, 0.0);
+                    for &n in self.ring(i) {
+                        let weight = areas[n as usize];
+                        sum += weight * (points[n as usize] - p);
+                        total += weight;
+                    }
+                    let normal = fans[i].0.normalize_or_zero();
+                    let step = lambda / total * sum;
+                    let tangential = step - step.dot(normal) * normal;
+                    if tangential.is_finite() { p + tangential } else { p }
+                })
+                .collect_into_vec(&mut moved);
+            for (&v, &p) in self.moving.iter().zip(&moved) {
+                points[v as usize] = p;
+            }
+        }
+    }
+
+    /// The unit normal at each mover.
+    pub fn normals(&self, points: &[DVec3]) -> Vec<DVec3> {
+        (0..self.moving.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|i| self.fan(i, points).0.normalize_or_zero())
+            .collect()
+    }
+}
+
+/// Relative area of every vertex that has faces.
+pub(crate) fn areas(table: &Table, points: &[DVec3], sizes: &[f64]) -> Vec<f64> {
+    (0..table.vertex_count())
+        .into_par_iter()
+        .with_min_len(CHUNK)
+        .map(|v| {
+            let size = sizes[v as usize];
+            let area = |h: u32| cross([v, table.head(h), table.apex(h)].map(|v| points[v as usize])).length();
+            let mut ring = (0, 0.0);
+            for h in table.ring(v) {
+                ring = (ring.0 + 1, ring.1 + area(h));
+            }
+            // A vertex on the border sees a part of its surroundings; the rest is taken to be alike.
+            let whole = if table.is_boundary(v) { 6.0 / f64::from(ring.0.max(1)) } else { 1.0 };
+            whole * ring.1 / (size * size)
+        })
+        .collect()
+}
+
+/// Takes back the moves of the corners of every face that turned over, until none has. Returns how many there were.
+pub(crate) fn undo_folds<O: EditObserver>(state: &mut State<'_, O>, before: &[DVec3], arcs: &[(u32, f64)]) -> usize {
+    let turned = |table: &Table, points: &[DVec3], f: u32| {
+        let corners = [0, 1, 2].map(|k| table.tail(3 * f + k));
+        corners[0] != NONE
+            && corners.iter().any(|&v| points[v as usize] != before[v as usize])
+            && !keeps_side(corners.map(|v| before[v as usize]), corners.map(|v| points[v as usize]))
+    };
+    let (table, points) = (&state.table, &state.points);
+    let faces = (0..table.halfedge_count() / 3).into_par_iter();
+    let mut suspects: Vec<u32> = faces.with_min_len(CHUNK).filter(|&f| turned(table, points, f)).collect();
+    let mut undone = 0;
+    while !suspects.is_empty() {
+        let mut touched = vec![];
+        for &f in &suspects {
+            if !turned(&state.table, &state.points, f) {
+                continue;
+            }
+            for v in [0, 1, 2].map(|k| state.table.tail(3 * f + k)) {
+                if state.points[v as usize] != before[v as usize] {
+                    state.points[v as usize] = before[v as usize];
+                    if let Ok(i) = arcs.binary_search_by_key(&v, |a| a.0) {
+                        state.lines.slide_to(v, arcs[i].1);
+                    }
+                    undone += 1;
+                    touched.extend(state.table.ring(v).map(|h| h / 3));
+                }
+            }
+        }
+        touched.sort_unstable();
+        touched.dedup();
+        suspects = touched;
+    }
+    undone
+}

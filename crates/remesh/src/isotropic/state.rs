@@ -1,0 +1,266 @@
+//! A surface while it is remeshed: topology, points, and what each vertex may do.
+
+use super::lines::Lines;
+use super::table::{FEATURE, LOCKED, NONE, Table};
+use glam::DVec3;
+use mesh_core::{EditObserver, VertexId};
+
+/// What a vertex may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Kind {
+    /// Move over the surface.
+    Free,
+    /// Slide along its feature polyline.
+    Line,
+    /// Nothing.
+    Fixed,
+}
+
+/// Edges longer than this share of the wanted length are split. [BotschKobbelt2004]
+const SPLIT: f64 = 4.0 / 3.0;
+/// Edges shorter than this share of the wanted length are collapsed. [BotschKobbelt2004]
+const COLLAPSE: f64 = 4.0 / 5.0;
+/// The least cosine between the normals of a face before and after an edit.
+pub(crate) const TURN: f64 = 0.3;
+
+pub(crate) struct State<'a, O> {
+    pub table: Table,
+    pub points: Vec<DVec3>,
+    pub kinds: Vec<Kind>,
+    /// Wanted edge length at each vertex.
+    pub sizes: Vec<f64>,
+    /// Wanted valence of each vertex.
+    pub targets: Vec<u8>,
+    /// A face of the input near each vertex.
+    pub seats: Vec<u32>,
+    pub lines: Lines,
+    pub observer: &'a mut O,
+}
+
+impl<O> State<'_, O> {
+    #[inline]
+    pub fn point(&self, v: u32) -> DVec3 {
+        self.points[v as usize]
+    }
+
+    #[inline]
+    pub fn kind(&self, v: u32) -> Kind {
+        self.kinds[v as usize]
+    }
+}
+
+impl<O: EditObserver> State<'_, O> {
+    #[inline]
+    fn is_candidate(&self, h: u32) -> bool {
+        let t = self.table.twin(h);
+        t != NONE && h < t && self.table.is_alive(h) && self.table.flags[h as usize] & LOCKED == 0
+    }
+
+    /// Squared length of an edge over the squared wanted length.
+    #[inline]
+    fn relative_length_squared(&self, h: u32) -> f64 {
+        let (a, b) = (self.table.tail(h), self.table.head(h));
+        let wanted = 0.5 * (self.sizes[a as usize] + self.sizes[b as usize]);
+        self.point(a).distance_squared(self.point(b)) / (wanted * wanted)
+    }
+
+    fn may_edit(&self, h: u32) -> bool {
+        self.observer.may_edit(VertexId(self.table.tail(h)), VertexId(self.table.head(h)))
+    }
+
+    /// Splits edges in the middle until none is too long. Returns how many splits there were.
+    pub fn split_long(&mut self, max_faces: usize) -> usize {
+        let mut splits = 0;
+        loop {
+            let before = splits;
+            let mut h = 0;
+            // Faces made on the way come later in the same sweep.
+            while h < self.table.halfedge_count() {
+                if self.is_candidate(h)
+                    && self.relative_length_squared(h) > SPLIT * SPLIT
+                    && self.is_longest(h)
+                    && self.may_edit(h)
+                    && self.table.live_faces() + 2 <= max_faces
+                {
+                    splits += usize::from(self.split(h));
+                }
+                h += 1;
+            }
+            if splits == before {
+                return splits;
+            }
+        }
+    }
+
+    /// Whether no other edge of its two triangles is longer. Splitting such an edge makes none as long, so that splits
+    /// come to an end, whatever edges may not be split.
+    fn is_longest(&self, h: u32) -> bool {
+        let [a, b, c, d] = self.diamond(h).map(|v| self.point(v));
+        let length = a.distance_squared(b);
+        [c, d].into_iter().all(|p| p.distance_squared(a) <= length && p.distance_squared(b) <= length)
+    }
+
+    fn split(&mut self, h: u32) -> bool {
+        let (a, b) = (self.table.tail(h), self.table.head(h));
+        let feature = self.table.flags[h as usize] & FEATURE != 0;
+        let middle = 0.5 * (self.point(a) + self.point(b));
+        if middle == self.point(a) || middle == self.point(b) {
+            return false;
+        }
+        let (kind, place) = if feature {
+            (Kind::Line, self.lines.insert(a, b, self.table.vertex_count(), middle))
+        } else {
+            (Kind::Free, middle)
+        };
+        let m = self.table.split(h);
+        self.points.push(place);
+        self.kinds.push(kind);
+        self.sizes.push(0.5 * (self.sizes[a as usize] + self.sizes[b as usize]));
+        self.targets.push(6);
+        self.seats.push(self.seats[a as usize]);
+        self.observer.split(VertexId(a), VertexId(b), 0.5, VertexId(m));
+        true
+    }
+
+    /// Collapses edges that are too short where that makes none too long and turns no face. Returns how many.
+    pub fn collapse_short(&mut self) -> usize {
+        let mut collapses = 0;
+        for h in 0..self.table.halfedge_count() {
+            if self.is_candidate(h) && self.relative_length_squared(h) < COLLAPSE * COLLAPSE && self.may_edit(h) {
+                collapses += usize::from(self.collapse(h) || self.collapse(self.table.twin(h)));
+            }
+        }
+        collapses
+    }
+
+    /// Merges the tail of `h` into its head, if that is sound.
+    fn collapse(&mut self, h: u32) -> bool {
+        let t = self.table.twin(h);
+        let (u, v) = (self.table.tail(h), self.table.head(h));
+        let feature = self.table.flags[h as usize] & FEATURE != 0;
+        let allowed = match (self.kind(u), self.kind(v)) {
+            (Kind::Free, _) => true,
+            (Kind::Line, Kind::Line | Kind::Fixed) => feature,
+            _ => false,
+        };
+        // The edges that vanish beside it must not be kept ones.
+        let beside = [super::table::prev(h), super::table::next(t)].map(|h| self.table.flags[h as usize]);
+        if !allowed || beside != [0, 0] || !self.table.collapses_cleanly(h) {
+            return false;
+        }
+        let (place, slid) = match (self.kind(u), self.kind(v)) {
+            (Kind::Free, Kind::Free) => (0.5 * (self.point(u) + self.point(v)), None),
+            (Kind::Line, Kind::Line) => {
+                let Some((s, place)) = self.lines.between(u, v) else { return false };
+                (place, Some(s))
+            }
+            _ => (self.point(v), None),
+        };
+        if !self.collapse_fits(h, place) {
+            return false;
+        }
+        if self.kind(u) == Kind::Line {
+            self.lines.remove(u, v, slid);
+        }
+        self.table.collapse(h);
+        self.points[v as usize] = place;
+        if self.kind(v) == Kind::Free {
+            self.sizes[v as usize] = 0.5 * (self.sizes[u as usize] + self.sizes[v as usize]);
+        }
+        self.observer.collapse(VertexId(u), VertexId(v));
+        true
+    }
+
+    /// Whether both ends of `h` can move to `place` with no edge too long and no face turned or flattened.
+    fn collapse_fits(&self, h: u32, place: DVec3) -> bool {
+        let (u, v) = (self.table.tail(h), self.table.head(h));
+        let wanted = 0.5 * (self.sizes[u as usize] + self.sizes[v as usize]);
+        [(u, v), (v, u)].into_iter().all(|(moved, other)| {
+            let old = self.point(moved);
+            if moved == v && place == old {
+                return true;
+            }
+            self.table.ring(moved).all(|ring| {
+                let (b, c) = (self.table.head(ring), self.table.apex(ring));
+                if b == other || c == other {
+                    return true;
+                }
+                let (pb, pc) = (self.point(b), self.point(c));
+                let longest = SPLIT * 0.5 * (wanted + self.sizes[b as usize]);
+                place.distance_squared(pb) <= longest * longest && keeps_side([old, pb, pc], [place, pb, pc])
+            })
+        })
+    }
+
+    /// Flips edges while that brings valences nearer to what is wanted. Returns how many flips there were.
+    pub fn flip_to_valence(&mut self) -> usize {
+        let mut flips = 0;
+        // Every flip lowers the sum of squared deviations, so that this ends by itself; later sweeps find little.
+        for _ in 0..4 {
+            let before = flips;
+            for h in 0..self.table.halfedge_count() {
+                if self.is_candidate(h)
+                    && self.table.flags[h as usize] == 0
+                    && self.valence_gain(h) > 0
+                    && self.may_edit(h)
+                    && self.flip_fits(h)
+                {
+                    let [a, b, c, d] = self.diamond(h).map(VertexId);
+                    self.table.flip(h);
+                    self.observer.flip(a, b, c, d);
+                    flips += 1;
+                }
+            }
+            if flips == before {
+                break;
+            }
+        }
+        flips
+    }
+
+    fn diamond(&self, h: u32) -> [u32; 4] {
+        let t = self.table.twin(h);
+        [self.table.tail(h), self.table.head(h), self.table.apex(h), self.table.apex(t)]
+    }
+
+    /// How much the sum of squared deviations from the wanted valences falls when `h` is flipped.
+    #[inline]
+    fn valence_gain(&self, h: u32) -> i32 {
+        let [a, b, c, d] = self.diamond(h);
+        let off = |v: u32| self.table.valence[v as usize] as i32 - i32::from(self.targets[v as usize]);
+        // (x − 1)² − x² = 1 − 2x at the ends, (x + 1)² − x² = 1 + 2x at the others.
+        2 * (off(a) + off(b) - off(c) - off(d)) - 4
+    }
+
+    fn flip_fits(&self, h: u32) -> bool {
+        let [a, b, c, d] = self.diamond(h);
+        let fewest = |v: u32| self.table.valence[v as usize] > if self.table.is_boundary(v) { 2 } else { 3 };
+        if c == d || !fewest(a) || !fewest(b) || self.table.between(c, d).is_some() {
+            return false;
+        }
+        let [pa, pb, pc, pd] = [a, b, c, d].map(|v| self.point(v));
+        let old = [[pa, pb, pc], [pb, pa, pd]];
+        [[pc, pa, pd], [pd, pb, pc]].into_iter().all(|new| old.into_iter().all(|old| keeps_side(old, new)))
+    }
+}
+
+/// Twice the area vector.
+#[inline]
+pub(crate) fn cross([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
+/// Whether a triangle that becomes another neither turns over nor loses its area; a flat one may become anything.
+#[inline]
+pub(crate) fn keeps_side(old: [DVec3; 3], new: [DVec3; 3]) -> bool {
+    let (m, n) = (cross(old), cross(new));
+    let flat = |n: DVec3, [a, b, c]: [DVec3; 3]| {
+        let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+        // Twice the area over the squared longest side: 0.87 when equilateral.
+        n.length_squared() <= 1e-4 * longest * longest
+    };
+    if flat(m, old) {
+        return !flat(n, new) || n.length_squared() >= m.length_squared();
+    }
+    !flat(n, new) && m.dot(n) >= TURN * (m.length_squared() * n.length_squared()).sqrt()
+}
