@@ -1,6 +1,6 @@
 //! What can be typed.
 
-use crate::length::{Length, angle, direction, point, positive_length};
+use crate::length::{Length, angle, direction, mesh_and_loop, point, positive_length, share};
 use crate::rolling::Rolling;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
@@ -61,6 +61,8 @@ pub enum Verb {
     Intersection(Join),
     /// Roll a ball along feature curves and put in the surface it leaves
     Blend(Blend),
+    /// Join the openings of parts by one smooth surface, leaving the parts as they are
+    Compose(Compose),
     /// Draw a still picture
     Render(Render),
     /// Build the showcase models with their reports and pictures; needs no input
@@ -171,6 +173,77 @@ pub struct Blend {
     pub near: Vec<DVec3>,
     #[command(flatten)]
     pub rolling: Rolling,
+}
+
+#[derive(Args)]
+pub struct Compose {
+    /// The open parts, as they are posed in their files
+    #[arg(required = true, value_name = "MESH")]
+    pub inputs: Vec<PathBuf>,
+    #[command(flatten)]
+    pub target: Target,
+    #[command(flatten)]
+    pub source: Source,
+    /// Kernel of the field
+    #[arg(long, value_enum, default_value = "triharmonic")]
+    pub kernel: Kernel,
+    /// How the field is held at the openings
+    #[arg(long, value_enum, default_value = "implicit")]
+    pub method: Method,
+    /// Rings of vertices around each opening that the field interpolates [default: 3; hermite 1, montage 0]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=16))]
+    pub rings: Option<u8>,
+    /// Size of the tessellation's cells, as a share of the openings' mean edge
+    #[arg(long, value_name = "SHARE", default_value_t = 0.8, value_parser = share)]
+    pub cell: f64,
+    /// Edge length of the surface away from the openings [default: that of the nearest openings]
+    #[arg(long, value_name = "L", value_parser = positive_length)]
+    pub edge_length: Option<Length>,
+    /// Join only this loop: MESH:LOOP, both counted from 0, as `info` lists them; may be given more than once
+    #[arg(long = "loop", value_name = "MESH:LOOP", value_parser = mesh_and_loop)]
+    pub loops: Vec<(usize, usize)>,
+    /// How far from the openings the surface may go, in diagonals of the box around them
+    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = share)]
+    pub space: f64,
+}
+
+/// The kernel of a field.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Kernel {
+    /// r: shrinks least, bends sharply at the openings
+    Biharmonic,
+    /// r³: smooth, tolerant of noise
+    Triharmonic,
+    /// r³ with exact normals: smoothest on clean meshes
+    Hermite,
+}
+
+impl From<Kernel> for fusion::compose::Kernel {
+    fn from(kernel: Kernel) -> Self {
+        match kernel {
+            Kernel::Biharmonic => Self::Biharmonic,
+            Kernel::Triharmonic => Self::Triharmonic,
+            Kernel::Hermite => Self::Hermite,
+        }
+    }
+}
+
+/// How a field is held.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Method {
+    /// Rings of the parts' vertices, and points outside of them
+    Implicit,
+    /// Boundary vertices alone, and points on both sides of them
+    Montage,
+}
+
+impl From<Method> for fusion::compose::Method {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::Implicit => Self::Implicit,
+            Method::Montage => Self::Montage,
+        }
+    }
 }
 
 #[derive(Args)]

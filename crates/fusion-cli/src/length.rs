@@ -72,6 +72,20 @@ pub fn angle(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number above zero.
+pub fn share(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(x) if x > 0.0 && x < f64::INFINITY => Ok(x),
+        _ => Err("must be a number above zero".into()),
+    }
+}
+
+/// A loop by the numbers of its mesh and of itself, `1:0`.
+pub fn mesh_and_loop(text: &str) -> Result<(usize, usize), String> {
+    let parsed = text.split_once(':').and_then(|(mesh, index)| Some((mesh.parse().ok()?, index.parse().ok()?)));
+    parsed.ok_or_else(|| "a loop is the number of its mesh and its own, such as 1:0".into())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -48,6 +48,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Verb::Union(args) => verbs::join::run(&session, &args, Operation::Union),
         Verb::Difference(args) => verbs::join::run(&session, &args, Operation::Difference),
         Verb::Intersection(args) => verbs::join::run(&session, &args, Operation::Intersection),
+        Verb::Compose(args) => verbs::compose::run(&session, &args),
         Verb::Render(args) => verbs::render::run(&session, &args),
         Verb::Demo(args) => verbs::demo::run(&session, &args),
         Verb::Blend(args) => verbs::blend::run(&session, &args),

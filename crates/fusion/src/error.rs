@@ -1,6 +1,6 @@
 //! Why a pipeline gives no result.
 
-use crate::{Invalid, blend};
+use crate::{Invalid, blend, compose};
 use glam::DVec3;
 use mesh_core::{Cancelled, NotManifold};
 use tri_intersect::EmbedError;
@@ -36,6 +36,9 @@ pub enum Error {
     /// A seam is no closed chain of edges.
     #[error(transparent)]
     Seam(#[from] spine::Error),
+    /// The parts could not be composed.
+    #[error(transparent)]
+    Compose(#[from] compose::Error),
     /// The result failed its own validation; nothing is returned.
     #[error(transparent)]
     Invalid(#[from] Invalid),
@@ -67,6 +70,7 @@ impl Error {
                 _ => None,
             },
             Self::Invalid(invalid) => invalid.at,
+            Self::Compose(error) => error.place(),
             Self::NoCurve(_, at) => *at,
             Self::Blend(_) | Self::TooFew(_) | Self::Cancelled(_) => None,
         }
@@ -80,7 +84,7 @@ impl Error {
             Self::Invalid(_)
                 | Self::Blend(blend::Error::Invalid(_))
                 | Self::Boolean { source: B::SelfIntersecting { .. }, .. }
-        )
+        ) || matches!(self, Self::Compose(error) if error.is_invalid_result())
     }
 
     /// Whether the caller asked to stop.
@@ -91,6 +95,6 @@ impl Error {
             Self::Cancelled(_)
                 | Self::Blend(blend::Error::Cancelled(_))
                 | Self::Boolean { source: B::Cancelled(_), .. }
-        )
+        ) || matches!(self, Self::Compose(error) if error.is_cancelled())
     }
 }

@@ -15,6 +15,7 @@
 //! |---|---|
 //! | `join.rs` | union, difference and intersection, with blended seams |
 //! | `round.rs` | blends along feature curves |
+//! | `compose/` | openings joined by one smooth surface |
 //! | `blend/` | rolling-ball blends of closed curves |
 //! | `outcome.rs`, `validity.rs`, `error.rs` | how every pipeline ends |
 //! | `repair.rs` | welding, orientation, taking apart |
@@ -26,6 +27,7 @@
 
 mod attributes;
 pub mod blend;
+pub mod compose;
 mod error;
 pub mod features;
 mod info;

@@ -17,8 +17,30 @@ pub struct Outcome {
     pub report: Report,
 }
 
-/// Checks a result as its format will hold it, and completes the report.
+/// What a result is promised to be, beside free of self-intersections in what was changed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Promise {
+    /// Oriented, 2-manifold and closed.
+    Closed,
+    /// Oriented and 2-manifold.
+    Manifold,
+}
+
+/// Checks a closed result as its format will hold it, and completes the report.
 pub(crate) fn finish(
+    parts: &[Model],
+    mesh: TriMesh,
+    origins: Origins,
+    format: Format,
+    report: Report,
+    watch: &Watch,
+) -> Result<Outcome, Error> {
+    finish_as(Promise::Closed, parts, mesh, origins, format, report, watch)
+}
+
+/// Checks a result as its format will hold it, and completes the report.
+pub(crate) fn finish_as(
+    promise: Promise,
     parts: &[Model],
     mesh: TriMesh,
     origins: Origins,
@@ -28,7 +50,7 @@ pub(crate) fn finish(
 ) -> Result<Outcome, Error> {
     report.describe(&mesh, &origins);
     let model = report.time("attributes", || carry(parts, mesh, &origins));
-    report.validity = report.time("validate", || as_written(&model, &origins, format, watch))?;
+    report.validity = report.time("validate", || as_written(&model, &origins, format, promise, watch))?;
     Ok(Outcome { model, origins, report })
 }
 

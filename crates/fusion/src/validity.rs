@@ -1,5 +1,6 @@
 //! Whether a result is sound in the coordinates that a file will hold.
 
+use crate::outcome::Promise;
 use crate::{Error, Validity};
 use glam::DVec3;
 use mesh_core::{Connected, FaceId, FaceOrigin, Faces, NotManifold, Origins, Watch, boundary_loops, validate};
@@ -28,10 +29,16 @@ impl From<NotManifold> for Invalid {
     }
 }
 
-/// Checks a result as `format` will hold it: finite, oriented, 2-manifold, closed, and no changed face meeting another.
+/// Checks a result as `format` will hold it: finite, oriented, 2-manifold, closed where promised, and no changed face meeting another.
 ///
 /// Faces that rounding moves count as changed. Whole faces of the inputs are trusted among each other.
-pub(crate) fn as_written(model: &Model, origins: &Origins, format: Format, watch: &Watch) -> Result<Validity, Error> {
+pub(crate) fn as_written(
+    model: &Model,
+    origins: &Origins,
+    format: Format,
+    promise: Promise,
+    watch: &Watch,
+) -> Result<Validity, Error> {
     let mesh = &model.mesh;
     let rounded = mesh_io::as_written(model, format);
     let (shape, format) = rounded.as_ref().map_or((mesh, None), |r| (r, Some(format)));
@@ -41,7 +48,8 @@ pub(crate) fn as_written(model: &Model, origins: &Origins, format: Format, watch
         let at = Connected::new(shape).err().and_then(|e| e.place);
         return invalid(defects.to_string().replace('\n', ";"), at);
     }
-    if !defects.is_closed() {
+    let closed = defects.is_closed();
+    if !closed && promise == Promise::Closed {
         let hole = || Some(*boundary_loops(&Connected::new(shape).ok()?).first()?.first()?);
         return invalid("it has a boundary".into(), hole().map(|h| shape.triangle(h.face())[h.corner()]));
     }
@@ -50,7 +58,7 @@ pub(crate) fn as_written(model: &Model, origins: &Origins, format: Format, watch
         shape.face_ids().filter(|&f| !matches!(origins.faces[f], FaceOrigin::Input { .. }) || moved(f)).collect();
     match self_intersections_among(shape, &changed, watch) {
         Ok(pairs) => match pairs.first() {
-            None => Ok(Validity { manifold: Some(true), closed: Some(true), self_intersections: Some(0) }),
+            None => Ok(Validity { manifold: Some(true), closed: Some(closed), self_intersections: Some(0) }),
             Some(&[f, _]) => invalid(format!("{} pairs of faces intersect", pairs.len()), Some(shape.triangle(f)[0])),
         },
         Err(tri_intersect::Error::Cancelled(c)) => Err(c.into()),

@@ -1,0 +1,44 @@
+//! `compose`: joins openings by a smooth surface.
+
+use crate::args::Compose as Args;
+use crate::failure::Failure;
+use crate::session::{Destination, Session, counts, joint_diagonal};
+use fusion::compose::{self, compose};
+
+/// Composes the inputs and writes the result.
+pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
+    let destination = Destination::check(&args.target, session)?;
+    let models = session.read_all(&args.inputs, &args.source)?;
+    let diagonal = joint_diagonal(&models);
+    let params = compose::Params {
+        kernel: args.kernel.into(),
+        method: args.method.into(),
+        rings: args.rings.map(usize::from),
+        cell: args.cell,
+        edge_length: args.edge_length.map(|l| l.resolve(diagonal)),
+        loops: (!args.loops.is_empty()).then(|| args.loops.clone()),
+        space: args.space,
+        ..compose::Params::new(destination.format)
+    };
+    let mut outcome = compose(&models, &params, session.watch()).map_err(|e| explain(&e, args))?;
+    outcome.report.inputs = counts(&args.inputs, &models);
+    for warning in &mut outcome.report.warnings {
+        *warning = with_names(warning, args);
+    }
+    session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
+}
+
+/// The library counts parts; the user knows files.
+fn explain(error: &fusion::Error, args: &Args) -> Failure {
+    Failure::of(error, with_names(&error.to_string(), args))
+}
+
+fn with_names(text: &str, args: &Args) -> String {
+    let mut text = text.to_string();
+    for (i, path) in args.inputs.iter().enumerate() {
+        for end in [" ", ",", ":"] {
+            text = text.replace(&format!("part {i}{end}"), &format!("{}{end}", path.display()));
+        }
+    }
+    text
+}

@@ -1,0 +1,148 @@
+//! The surface between the openings: the field's zero set, tessellated and remeshed.
+
+use super::openings::{Opening, mean_edge};
+use super::{Error, Params};
+use crate::Report;
+use glam::DVec3;
+use lmc_tessellate::{Rim, Transition, suggested_cell, tessellate};
+use mesh_core::{Connected, Faces, TriMesh, VertexId, Watch};
+use rayon::prelude::*;
+use rbf_solve::Field;
+use remesh::{Frozen, Projection, Sizing};
+use std::collections::BTreeSet;
+
+/// The surface between the openings, whose first vertices are theirs. `fineness` divides the cells.
+pub(super) fn surface(
+    openings: &[Opening],
+    field: &Field,
+    params: &Params,
+    fineness: f64,
+    report: &mut Report,
+    watch: &Watch,
+) -> Result<Transition, Error> {
+    let rims: Vec<Rim> = openings.iter().map(|o| o.rim.clone()).collect();
+    let how = lmc_tessellate::Params {
+        cell: suggested_cell(&rims) * params.cell / (0.8 * fineness),
+        space: params.space,
+        ..lmc_tessellate::Params::default()
+    };
+    let values = |points: &[DVec3], out: &mut [f64]| field.values(points, out);
+    let made = report.time("tessellate", || tessellate(&rims, &values, &how, watch))?;
+    report.figures.insert("cells".into(), made.cells as f64);
+    report.figures.insert("cell".into(), how.cell);
+    let mesh = report.time("remesh", || even_out(made.mesh, openings, field, params, watch))?;
+    Ok(Transition { mesh, ..made })
+}
+
+/// Remeshes to edges as long as those of the nearest openings, or as asked, with vertices on the zero set.
+fn even_out(
+    mesh: TriMesh,
+    openings: &[Opening],
+    field: &Field,
+    params: &Params,
+    watch: &Watch,
+) -> Result<TriMesh, Error> {
+    let sizes = Sizes::new(openings, params.edge_length);
+    let size = |p: DVec3| sizes.at(p);
+    let reach = 0.5 * mean_edge(openings);
+    let project = |points: &mut [DVec3]| onto(field, points, reach);
+    let Ok(connected) = Connected::new(mesh) else { return Err(Error::Closed) };
+    let how = remesh::Params {
+        feature_angle: 180.0,
+        ..remesh::Params::new(params.edge_length.unwrap_or_else(|| mean_edge(openings)))
+    };
+    let made =
+        remesh::remesh(&connected, &Frozen::default(), Sizing::Field(&size), &how, Projection::Field(&project), watch)?;
+    Ok(made.mesh)
+}
+
+/// One Newton step of every point towards the zero set, and another where the first was long.
+fn onto(field: &Field, points: &mut [DVec3], reach: f64) {
+    let mut values = vec![0.0; points.len()];
+    let mut gradients = vec![DVec3::ZERO; points.len()];
+    field.values(points, &mut values);
+    field.gradients(points, &mut gradients);
+    for (p, (v, g)) in points.iter_mut().zip(values.iter().zip(&gradients)) {
+        let step = -*v * *g / g.length_squared();
+        if step.is_finite() {
+            *p += step.clamp_length_max(reach);
+        }
+    }
+}
+
+/// The wanted edge length at every place.
+struct Sizes {
+    /// Places on the openings and the mean edge there.
+    samples: Vec<(DVec3, f64)>,
+    wanted: Option<f64>,
+}
+
+impl Sizes {
+    /// How fast lengths may change with the distance from an opening.
+    const GROWTH: f64 = 0.3;
+    /// Places on each opening.
+    const SAMPLES: usize = 128;
+
+    fn new(openings: &[Opening], wanted: Option<f64>) -> Self {
+        let mut samples = vec![];
+        for o in openings {
+            let lengths: Vec<f64> = o.rim.lengths().collect();
+            let n = lengths.len();
+            for i in (0..n).step_by(n.div_ceil(Self::SAMPLES)) {
+                // A cut leaves slivers: single edges say little.
+                let window = 7.min(n);
+                let mean = (0..window).map(|k| lengths[(i + n + k - window / 2) % n]).sum::<f64>() / window as f64;
+                samples.push((o.rim.points[i], mean));
+            }
+        }
+        Self { samples, wanted }
+    }
+
+    fn at(&self, p: DVec3) -> f64 {
+        if let Some(wanted) = self.wanted {
+            let (d, edge) = self.samples.iter().map(|s| (p.distance_squared(s.0), s.1)).fold(
+                (f64::INFINITY, wanted),
+                |best, s| if s.0 < best.0 { s } else { best },
+            );
+            let change = Self::GROWTH * d.sqrt();
+            return if edge < wanted { (edge + change).min(wanted) } else { (edge - change).max(wanted) };
+        }
+        // The fourth power keeps far openings out of the neighbourhood of a near one.
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (q, edge) in &self.samples {
+            let w = p.distance_squared(*q).max(1e-4 * edge * edge).powi(-2);
+            sum += w * edge;
+            weights += w;
+        }
+        sum / weights
+    }
+}
+
+/// Splits edges of the surface that join two vertices of an opening which the part already joins by an edge: welded,
+/// that edge would have four faces.
+pub(super) fn split_chords(mesh: &mut TriMesh, taken: &BTreeSet<[u32; 2]>, field: &Field, reach: f64) -> usize {
+    let edge = |a: VertexId, b: VertexId| [a.0.min(b.0), a.0.max(b.0)];
+    let mut chords: Vec<[u32; 2]> = mesh
+        .faces
+        .par_iter()
+        .flat_map_iter(|f| [edge(f[0], f[1]), edge(f[1], f[2]), edge(f[2], f[0])])
+        .filter(|e| taken.contains(e))
+        .collect();
+    chords.sort_unstable();
+    let chords: Vec<[u32; 2]> = chords.chunk_by(|a, b| a == b).filter(|c| c.len() > 1).map(|c| c[0]).collect();
+    for [a, b] in &chords {
+        let middle = VertexId::from(mesh.vertex_count());
+        let mut p = [0.5 * (mesh.positions[*a as usize] + mesh.positions[*b as usize])];
+        onto(field, &mut p, reach);
+        mesh.positions.push(p[0]);
+        for f in 0..mesh.faces.len() {
+            let face = mesh.faces[f];
+            let Some(k) = (0..3).find(|&k| edge(face[k], face[(k + 1) % 3]) == [*a, *b]) else { continue };
+            mesh.faces[f][(k + 1) % 3] = middle;
+            let mut other = face;
+            other[k] = middle;
+            mesh.faces.push(other);
+        }
+    }
+    chords.len()
+}
