@@ -20,7 +20,9 @@ pub enum Error {
         count: usize,
     },
     /// A part's normals point inward.
-    #[error("part {part} is inside out near {at}: closed at its openings it would enclose a negative volume; turn its faces over")]
+    #[error(
+        "part {part} is inside out near {at}: closed at its openings it would enclose a negative volume; turn its faces over"
+    )]
     InsideOut {
         /// The part.
         part: usize,
@@ -38,7 +40,9 @@ pub enum Error {
         at: DVec3,
     },
     /// An opening lies inside the solid of another part.
-    #[error("loop {index} of part {part} lies inside part {other} at {at}; move one of them so that openings face free space")]
+    #[error(
+        "loop {index} of part {part} lies inside part {other} at {at}; move one of them so that openings face free space"
+    )]
     Buried {
         /// The part with the opening.
         part: usize,
@@ -98,16 +102,16 @@ impl Error {
             | Self::Overlap { at, .. }
             | Self::Buried { at, .. }
             | Self::Apart { at, .. }
-            | Self::Crossing { at, .. } => Some(*at),
-            Self::Surface(
+            | Self::Crossing { at, .. }
+            | Self::Surface(
                 L::NotANumber { at }
                 | L::Inverted { at, .. }
                 | L::Unbounded { at }
                 | L::TooLarge { at, .. }
                 | L::Leak { at, .. }
                 | L::Gap { at, .. },
-            ) => Some(*at),
-            Self::Field(
+            )
+            | Self::Field(
                 rbf_solve::Error::Flat { at, .. }
                 | rbf_solve::Error::Contradiction { at, .. }
                 | rbf_solve::Error::Singular { at, .. }

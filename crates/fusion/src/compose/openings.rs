@@ -4,8 +4,7 @@ use super::Error;
 use glam::DVec3;
 use lmc_tessellate::Rim;
 use mesh_core::{
-    Bounds, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, bounds, boundary_loops,
-    components,
+    Bounds, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, boundary_loops, bounds, components,
 };
 use mesh_query::TriBvh;
 use tri_intersect::triangles_intersect;
@@ -140,4 +139,3 @@ pub(super) fn mean_edge(openings: &[Opening]) -> f64 {
     let edges: usize = openings.iter().map(|o| o.walk.len()).sum();
     openings.iter().flat_map(|o| o.rim.lengths()).sum::<f64>() / edges as f64
 }
-

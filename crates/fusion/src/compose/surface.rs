@@ -100,10 +100,11 @@ impl Sizes {
 
     fn at(&self, p: DVec3) -> f64 {
         if let Some(wanted) = self.wanted {
-            let (d, edge) = self.samples.iter().map(|s| (p.distance_squared(s.0), s.1)).fold(
-                (f64::INFINITY, wanted),
-                |best, s| if s.0 < best.0 { s } else { best },
-            );
+            let (d, edge) = self
+                .samples
+                .iter()
+                .map(|s| (p.distance_squared(s.0), s.1))
+                .fold((f64::INFINITY, wanted), |best, s| if s.0 < best.0 { s } else { best });
             let change = Self::GROWTH * d.sqrt();
             return if edge < wanted { (edge + change).min(wanted) } else { (edge - change).max(wanted) };
         }
