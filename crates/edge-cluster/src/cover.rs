@@ -111,7 +111,9 @@ fn edge_orbits(solid: &Polyhedron, group: &[Vec<u32>]) -> Vec<Vec<u32>> {
         let mut orbit: Vec<u32> = images.map(|g| g.min(solid.halfedges[g as usize].twin)).collect();
         orbit.sort_unstable();
         orbit.dedup();
-        orbit.iter().for_each(|&g| seen[g as usize] = true);
+        for &g in &orbit {
+            seen[g as usize] = true;
+        }
         orbits.push(orbit);
     }
     orbits

@@ -60,7 +60,7 @@ impl Default for Params {
         Self {
             continuity: 1,
             degree: None,
-            extent: 0.8,
+            extent: 0.7,
             bulge: 0.0,
             sharp: vec![],
             all_sharp: false,

@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use crate::clustering::Cluster;
 use crate::length::{Length, angle, direction, mesh_and_loop, point, positive_length, share};
 use crate::rolling::Rolling;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -63,6 +64,8 @@ pub enum Verb {
     Blend(Blend),
     /// Join the openings of parts by one smooth surface, leaving the parts as they are
     Compose(Compose),
+    /// Round a polyhedron: one patch for each cluster of its edges, in contact with the faces around
+    Cluster(Cluster),
     /// Draw a still picture
     Render(Render),
     /// Build the showcase models with their reports and pictures; needs no input

@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `args.rs`, `rolling.rs`, `length.rs` | what can be typed |
+//! | `args.rs`, `rolling.rs`, `clustering.rs`, `length.rs` | what can be typed |
 //! | `failure.rs` | exit codes |
 //! | `session.rs` | one command: reading, progress, messages, writing |
 //! | `output.rs` | files that appear all at once or not at all |
@@ -10,6 +10,7 @@
 //! | `verbs/` | one file per verb |
 
 mod args;
+mod clustering;
 mod failure;
 mod length;
 mod output;
@@ -51,6 +52,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Verb::Compose(args) => verbs::compose::run(&session, &args),
         Verb::Render(args) => verbs::render::run(&session, &args),
         Verb::Demo(args) => verbs::demo::run(&session, &args),
+        Verb::Cluster(args) => verbs::cluster::run(&session, &args),
         Verb::Blend(args) => verbs::blend::run(&session, &args),
     }
 }

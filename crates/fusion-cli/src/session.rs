@@ -83,8 +83,23 @@ impl Session {
         origins: Option<&Origins>,
         report: &Report,
     ) -> Result<(), Failure> {
+        self.write_with(target, model, origins, vec![], report)
+    }
+
+    /// The same, with further files.
+    pub fn write_with(
+        &self,
+        target: &Destination,
+        model: &Model,
+        origins: Option<&Origins>,
+        files: Vec<(PathBuf, Vec<u8>)>,
+        report: &Report,
+    ) -> Result<(), Failure> {
         self.watch().step("write", 0.0).map_err(|_| Failure::cancelled())?;
         let mut outputs = Outputs::default();
+        for (path, bytes) in files {
+            outputs.add(path, bytes);
+        }
         if let Some((path, origins)) = target.origins.as_ref().zip(origins) {
             outputs.add(path, fusion::origins_to_json(origins).into_bytes());
         }

@@ -39,6 +39,9 @@ pub enum Error {
     /// The parts could not be composed.
     #[error(transparent)]
     Compose(#[from] compose::Error),
+    /// A polyhedron cannot be blended by clusters as asked.
+    #[error(transparent)]
+    Cluster(#[from] edge_cluster::Error),
     /// The result failed its own validation; nothing is returned.
     #[error(transparent)]
     Invalid(#[from] Invalid),
@@ -69,6 +72,7 @@ impl Error {
                 EmbedError::Apart { place, .. } | EmbedError::TooSmall { place, .. } => Some(*place),
                 _ => None,
             },
+            Self::Cluster(error) => error.place(),
             Self::Invalid(invalid) => invalid.at,
             Self::Compose(error) => error.place(),
             Self::NoCurve(_, at) => *at,
@@ -94,6 +98,7 @@ impl Error {
             self,
             Self::Cancelled(_)
                 | Self::Blend(blend::Error::Cancelled(_))
+                | Self::Cluster(edge_cluster::Error::Cancelled(_))
                 | Self::Boolean { source: B::Cancelled(_), .. }
         ) || matches!(self, Self::Compose(error) if error.is_cancelled())
     }

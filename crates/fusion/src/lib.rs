@@ -17,6 +17,7 @@
 //! | `round.rs` | blends along feature curves |
 //! | `compose/` | openings joined by one smooth surface |
 //! | `blend/` | rolling-ball blends of closed curves |
+//! | `cluster/` | polyhedra rounded cluster by cluster |
 //! | `outcome.rs`, `validity.rs`, `error.rs` | how every pipeline ends |
 //! | `repair.rs` | welding, orientation, taking apart |
 //! | `info.rs` | counts, measures and defects of one mesh |
@@ -27,6 +28,7 @@
 
 mod attributes;
 pub mod blend;
+pub mod cluster;
 pub mod compose;
 mod error;
 pub mod features;

@@ -30,6 +30,9 @@ pub struct Report {
     pub figures: BTreeMap<String, f64>,
     /// What the user should know although the job succeeded, as sentences.
     pub warnings: Vec<String>,
+    /// Choices that were made and why, as sentences.
+    #[serde(default)]
+    pub notes: Vec<String>,
     /// Wall-clock time of each stage, in the order they ran.
     pub stages: Vec<Stage>,
 }
@@ -97,6 +100,7 @@ impl Default for Report {
             quality: Quality::default(),
             figures: BTreeMap::new(),
             warnings: vec![],
+            notes: vec![],
             stages: vec![],
         }
     }

@@ -1,6 +1,7 @@
 //! One file per verb. Each turns arguments into one library call and its result into output.
 
 pub mod blend;
+pub mod cluster;
 pub mod compose;
 pub mod convert;
 pub mod demo;

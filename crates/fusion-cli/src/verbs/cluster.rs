@@ -1,0 +1,58 @@
+//! `cluster`: rounds polyhedra cluster by cluster.
+
+use crate::clustering::Cluster as Args;
+use crate::failure::Failure;
+use crate::output::check_writable;
+use crate::session::{Destination, Session, counts, is_stream};
+use fusion::cluster::{CoverParams, Params, PatchParams, Spec, StripParams, cluster, clusters_from_toml};
+use std::fs;
+
+/// Blends the clusters of a polyhedron and writes the result.
+pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
+    let destination = Destination::check(&args.target, session)?;
+    if let Some(nets) = &args.nets {
+        if is_stream(nets) || *nets == args.target.output {
+            return Err(Failure::usage("--nets needs a file of its own"));
+        }
+        check_writable(nets)?;
+    }
+    let clusters = args.clusters.as_deref().map(read_clusters).transpose()?;
+    let model = session.read(&args.input, &args.source)?;
+    let strip = StripParams {
+        order: args.order.unwrap_or(args.continuity),
+        balance: args.mu,
+        cut: args.cut,
+        follow: args.follow,
+    };
+    let params = Params {
+        clusters,
+        cover: if args.singles { CoverParams { distortion: 0.0, short: 0.0 } } else { CoverParams::default() },
+        patch: PatchParams {
+            continuity: args.continuity,
+            degree: args.degree,
+            extent: args.extent,
+            bulge: args.bulge,
+            sharp: args.sharp.clone(),
+            all_sharp: args.all_sharp,
+            strip,
+        },
+        tolerance: args.tolerance,
+        ..Params::new(destination.format)
+    };
+    let mut made = cluster(&model, &params, session.watch())
+        .map_err(|e| Failure::of(&e, format!("{}: {e}", args.input.display())))?;
+    let report = &mut made.outcome.report;
+    report.inputs = counts(std::slice::from_ref(&args.input), std::slice::from_ref(&model));
+    for note in &report.notes {
+        session.note(note);
+    }
+    let nets = args.nets.iter().map(|path| (path.clone(), made.nets_to_json().into_bytes())).collect();
+    let outcome = &made.outcome;
+    session.write_with(&destination, &outcome.model, Some(&outcome.origins), nets, &outcome.report)
+}
+
+fn read_clusters(path: &std::path::Path) -> Result<Vec<Spec>, Failure> {
+    let bad = |e: &dyn std::fmt::Display| Failure::unreadable(format!("{}: {e}", path.display()));
+    let text = fs::read_to_string(path).map_err(|e| bad(&e))?;
+    clusters_from_toml(&text).map_err(|e| bad(&e))
+}
