@@ -53,7 +53,7 @@ struct Dice(u64);
 impl Dice {
     fn roll(&mut self, faces: i64) -> i64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) as i64) % faces
+        (self.0 >> 33).cast_signed() % faces
     }
     fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.roll(1 << 20) as f64 / f64::from(1 << 20)
@@ -225,7 +225,7 @@ fn roof(m: usize, two: bool, dice: &mut Dice) -> (Polyhedron, Cluster) {
     let half = if two { 0.5 } else { 0.0 };
     let ridge = [DVec3::new(-half, 0.0, 1.0), DVec3::new(half, 0.0, 1.0)];
     // Planes by azimuth; with two vertices the first and another in the middle hold both.
-    let back = if two { 2 + dice.roll(m as i64 - 3) as usize } else { m };
+    let back = if two { 2 + dice.roll(i64::try_from(m).unwrap() - 3) as usize } else { m };
     let mut planes = vec![];
     for k in 0..m {
         let angle = match (two, k < back) {
