@@ -1,7 +1,8 @@
 //! What can be typed.
 
 use crate::clustering::Cluster;
-use crate::length::{Length, angle, direction, mesh_and_loop, point, positive_length, share};
+use crate::length::{Length, angle, angle_or_none, direction, mesh_and_loop, point, positive_length, share};
+use crate::place::Place;
 use crate::rolling::Rolling;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
@@ -66,6 +67,8 @@ pub enum Verb {
     Compose(Compose),
     /// Round a polyhedron: one patch for each cluster of its edges, in contact with the faces around
     Cluster(Cluster),
+    /// Make triangles even; boundaries and features are kept
+    Remesh(Remesh),
     /// Draw a still picture
     Render(Render),
     /// Build the showcase models with their reports and pictures; needs no input
@@ -247,6 +250,28 @@ impl From<Method> for fusion::compose::Method {
             Method::Montage => Self::Montage,
         }
     }
+}
+
+#[derive(Args)]
+pub struct Remesh {
+    /// The mesh to remesh
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub target: Target,
+    #[command(flatten)]
+    pub source: Source,
+    /// Wanted edge length
+    #[arg(long, value_name = "L", value_parser = positive_length)]
+    pub edge_length: Length,
+    /// Rounds of splitting, collapsing, flipping and relaxing
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub iterations: u16,
+    /// Remesh these faces only: near=X,Y,Z,RADIUS, group=NAME, origin=STAGE, or a file of face ids
+    #[arg(long, value_name = "REGION", allow_hyphen_values = true)]
+    pub region: Option<Place>,
+    /// Least angle between the normals of two neighbouring faces that makes their edge a feature; 180 keeps none
+    #[arg(long, value_name = "DEG", default_value = "40", value_parser = angle_or_none)]
+    pub angle: f64,
 }
 
 #[derive(Args)]

@@ -86,6 +86,14 @@ pub fn mesh_and_loop(text: &str) -> Result<(usize, usize), String> {
     parsed.ok_or_else(|| "a loop is the number of its mesh and its own, such as 1:0".into())
 }
 
+/// An angle in degrees, in (0, 180]; 180 means none is large enough.
+pub fn angle_or_none(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(180.0) => Ok(180.0),
+        _ => angle(text),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

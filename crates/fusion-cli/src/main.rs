@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `args.rs`, `rolling.rs`, `clustering.rs`, `length.rs` | what can be typed |
+//! | `args.rs`, `rolling.rs`, `clustering.rs`, `length.rs`, `place.rs` | what can be typed |
 //! | `failure.rs` | exit codes |
 //! | `session.rs` | one command: reading, progress, messages, writing |
 //! | `output.rs` | files that appear all at once or not at all |
@@ -14,6 +14,7 @@ mod clustering;
 mod failure;
 mod length;
 mod output;
+mod place;
 mod progress;
 mod rolling;
 mod session;
@@ -50,6 +51,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Verb::Difference(args) => verbs::join::run(&session, &args, Operation::Difference),
         Verb::Intersection(args) => verbs::join::run(&session, &args, Operation::Intersection),
         Verb::Compose(args) => verbs::compose::run(&session, &args),
+        Verb::Remesh(args) => verbs::remesh::run(&session, &args),
         Verb::Render(args) => verbs::render::run(&session, &args),
         Verb::Demo(args) => verbs::demo::run(&session, &args),
         Verb::Cluster(args) => verbs::cluster::run(&session, &args),

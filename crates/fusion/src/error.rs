@@ -42,6 +42,12 @@ pub enum Error {
     /// A polyhedron cannot be blended by clusters as asked.
     #[error(transparent)]
     Cluster(#[from] edge_cluster::Error),
+    /// A region is not there.
+    #[error("{0}")]
+    Region(String),
+    /// The surface could not be remeshed.
+    #[error(transparent)]
+    Remesh(#[from] remesh::Error),
     /// The result failed its own validation; nothing is returned.
     #[error(transparent)]
     Invalid(#[from] Invalid),
@@ -76,7 +82,10 @@ impl Error {
             Self::Invalid(invalid) => invalid.at,
             Self::Compose(error) => error.place(),
             Self::NoCurve(_, at) => *at,
-            Self::Blend(_) | Self::TooFew(_) | Self::Cancelled(_) => None,
+            Self::Remesh(remesh::Error::NotFinite { place, .. } | remesh::Error::Singular { at: place }) => {
+                Some(*place)
+            }
+            Self::Region(_) | Self::Remesh(_) | Self::Blend(_) | Self::TooFew(_) | Self::Cancelled(_) => None,
         }
     }
 
@@ -99,6 +108,7 @@ impl Error {
             Self::Cancelled(_)
                 | Self::Blend(blend::Error::Cancelled(_))
                 | Self::Cluster(edge_cluster::Error::Cancelled(_))
+                | Self::Remesh(remesh::Error::Cancelled(_))
                 | Self::Boolean { source: B::Cancelled(_), .. }
         ) || matches!(self, Self::Compose(error) if error.is_cancelled())
     }

@@ -19,6 +19,7 @@
 //! | `blend/` | rolling-ball blends of closed curves |
 //! | `cluster/` | polyhedra rounded cluster by cluster |
 //! | `outcome.rs`, `validity.rs`, `error.rs` | how every pipeline ends |
+//! | `remeshing.rs`, `region.rs` | remeshing of a surface or a region of it; regions |
 //! | `repair.rs` | welding, orientation, taking apart |
 //! | `info.rs` | counts, measures and defects of one mesh |
 //! | `features.rs` | feature curves by dihedral angle |
@@ -37,6 +38,8 @@ pub mod join;
 mod origins_json;
 mod outcome;
 mod palette;
+mod region;
+pub mod remeshing;
 mod repair;
 mod report;
 pub mod round;
@@ -51,6 +54,8 @@ pub use origins_json::origins_to_json;
 pub use outcome::Outcome;
 pub use palette::palette_index;
 pub use profile_nurbs::Profile;
+pub use region::Region;
+pub use remeshing::remesh;
 pub use render;
 pub use repair::{Repair, repair};
 pub use report::{Counts, Quality, Report, Stage, Validity};

@@ -8,4 +8,5 @@ pub mod demo;
 pub mod features;
 pub mod info;
 pub mod join;
+pub mod remesh;
 pub mod render;

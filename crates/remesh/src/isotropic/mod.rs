@@ -19,7 +19,7 @@ use mesh_core::{
 };
 pub use params::{Frozen, Params, Projection, Remeshed, Sizing};
 use rayon::prelude::*;
-use relax::{Rings, areas, undo_folds};
+use relax::{Rings, undo_folds, weights};
 use seat::{Ground, Seat};
 use state::{Kind, State};
 use table::{LOCKED, NONE, Table};
@@ -94,8 +94,8 @@ fn relax_and_project<M: Adjacency + Positions + Sync, O: EditObserver>(
         .filter(|&v| state.kind(v) == Kind::Line && state.table.out[v as usize] != NONE)
         .collect();
     let arcs: Vec<(u32, f64)> = sliding.iter().map(|&v| (v, state.lines.arc(v))).collect();
-    let mut areas = areas(&state.table, &state.points, &state.sizes);
-    rings.relax(&mut state.points, &mut areas, &state.sizes, params.relaxations, params.lambda);
+    let weights = weights(&state.table, &state.points, &state.sizes);
+    rings.relax(&mut state.points, &weights, params.relaxations, params.lambda);
     for _ in 0..params.relaxations {
         for &v in &sliding {
             if let Some(place) = state.lines.relax(v, params.lambda) {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use mesh_core::{FaceMap, TriMesh, VertexMap};
 
-/// How a surface is remeshed. The defaults are those of [BotschKobbelt2004].
+/// How a surface is remeshed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     /// Wanted edge length, in model units. Positive and finite. [`Sizing`] may vary it.
@@ -17,7 +17,7 @@ pub struct Params {
     pub shortest_feature: f64,
     /// Steps of tangential relaxation in each round.
     pub relaxations: usize,
-    /// Share of the way to the area-weighted mean of the neighbours that each step goes, in (0, 1].
+    /// Share of the way to the weighted mean of the neighbours that each step goes, in (0, 1].
     pub lambda: f64,
     /// Most triangles the result may have.
     pub max_faces: usize,
@@ -30,8 +30,8 @@ impl Default for Params {
             rounds: 5,
             feature_angle: 40.0,
             shortest_feature: 4.0,
-            relaxations: 10,
-            lambda: 0.1,
+            relaxations: 6,
+            lambda: 0.7,
             max_faces: 1 << 28,
         }
     }

@@ -56,37 +56,25 @@ impl Rings {
         &self.neighbours[self.starts[i] as usize..self.starts[i + 1] as usize]
     }
 
-    /// Area vector of the fan around mover `i`, and its area.
-    fn fan(&self, i: usize, points: &[DVec3]) -> (DVec3, f64) {
+    /// Area vector of the fan around mover `i`.
+    fn fan(&self, i: usize, points: &[DVec3]) -> DVec3 {
         let p = points[self.moving[i] as usize];
         let ring = self.ring(i);
-        let Some(&last) = ring.last() else { return (DVec3::ZERO, 0.0) };
-        let (mut before, mut sum, mut area) = (points[last as usize] - p, DVec3::ZERO, 0.0);
+        let Some(&last) = ring.last() else { return DVec3::ZERO };
+        let (mut before, mut sum) = (points[last as usize] - p, DVec3::ZERO);
         for &n in ring {
             let here = points[n as usize] - p;
-            let face = before.cross(here);
-            sum += face;
-            area += face.length();
+            sum += before.cross(here);
             before = here;
         }
-        (sum, area)
+        sum
     }
 
-    /// Moves every mover `steps` times the share `lambda` of the way to the mean of its neighbours, weighted by their
-    /// areas over their wanted areas, within its tangent plane.
-    pub fn relax(&self, points: &mut [DVec3], areas: &mut [f64], sizes: &[f64], steps: usize, lambda: f64) {
-        let mut fans: Vec<(DVec3, f64)> = vec![];
+    /// Moves every mover `steps` times the share `lambda` of the way to the weighted mean of its neighbours, within its
+    /// tangent plane.
+    pub fn relax(&self, points: &mut [DVec3], weights: &[f64], steps: usize, lambda: f64) {
         let mut moved: Vec<DVec3> = vec![];
         for _ in 0..steps {
-            (0..self.moving.len())
-                .into_par_iter()
-                .with_min_len(CHUNK)
-                .map(|i| self.fan(i, points))
-                .collect_into_vec(&mut fans);
-            for (&v, fan) in self.moving.iter().zip(&fans) {
-                areas[v as usize] = fan.1 / (sizes[v as usize] * sizes[v as usize]);
-            }
-            let areas = &*areas;
             (0..self.moving.len())
                 .into_par_iter()
                 .with_min_len(CHUNK)
@@ -94,13 +82,13 @@ impl Rings {
                     let p = points[self.moving[i] as usize];
                     let (mut sum, mut total) = (DVec3::ZERO, 0.0);
                     for &n in self.ring(i) {
-                        let weight = areas[n as usize];
+                        let weight = weights[n as usize];
                         sum += weight * (points[n as usize] - p);
                         total += weight;
                     }
-                    let normal = fans[i].0.normalize_or_zero();
+                    let normal = self.fan(i, points);
                     let step = lambda / total * sum;
-                    let tangential = step - step.dot(normal) * normal;
+                    let tangential = step - step.dot(normal) / normal.length_squared() * normal;
                     if tangential.is_finite() { p + tangential } else { p }
                 })
                 .collect_into_vec(&mut moved);
@@ -115,13 +103,17 @@ impl Rings {
         (0..self.moving.len())
             .into_par_iter()
             .with_min_len(CHUNK)
-            .map(|i| self.fan(i, points).0.normalize_or_zero())
+            .map(|i| self.fan(i, points).normalize_or_zero())
             .collect()
     }
 }
 
-/// Relative area of every vertex that has faces.
-pub(crate) fn areas(table: &Table, points: &[DVec3], sizes: &[f64]) -> Vec<f64> {
+/// How strongly each vertex draws its neighbours: the fourth root of the area around it, over its wanted area.
+///
+/// The area itself evens out areas at the cost of shapes. Mean quality 2√3·r/l of an 86k-triangle scan at its mean edge
+/// after five rounds: 0.918 with areas, 0.930 with their square root, 0.942 without weights. Without, fine boundaries
+/// draw too much.
+pub(crate) fn weights(table: &Table, points: &[DVec3], sizes: &[f64]) -> Vec<f64> {
     (0..table.vertex_count())
         .into_par_iter()
         .with_min_len(CHUNK)
@@ -134,7 +126,7 @@ pub(crate) fn areas(table: &Table, points: &[DVec3], sizes: &[f64]) -> Vec<f64> 
             }
             // A vertex on the border sees a part of its surroundings; the rest is taken to be alike.
             let whole = if table.is_boundary(v) { 6.0 / f64::from(ring.0.max(1)) } else { 1.0 };
-            whole * ring.1 / (size * size)
+            (whole * ring.1 / (size * size)).sqrt().sqrt()
         })
         .collect()
 }

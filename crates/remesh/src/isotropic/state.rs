@@ -201,7 +201,7 @@ impl<O: EditObserver> State<'_, O> {
             for h in 0..self.table.halfedge_count() {
                 if self.is_candidate(h)
                     && self.table.flags[h as usize] == 0
-                    && self.valence_gain(h) > 0
+                    && (self.valence_gain(h) > 0 || self.valence_gain(h) == 0 && self.opens(h))
                     && self.may_edit(h)
                     && self.flip_fits(h)
                 {
@@ -230,6 +230,14 @@ impl<O: EditObserver> State<'_, O> {
         let off = |v: u32| self.table.valence[v as usize] as i32 - i32::from(self.targets[v as usize]);
         // (x − 1)² − x² = 1 − 2x at the ends, (x + 1)² − x² = 1 + 2x at the others.
         2 * (off(a) + off(b) - off(c) - off(d)) - 4
+    }
+
+    /// Whether the flip makes the angles that face the edge clearly smaller.
+    fn opens(&self, h: u32) -> bool {
+        let [a, b, c, d] = self.diamond(h).map(|v| self.point(v));
+        let cosine =
+            |p: DVec3, q: DVec3, r: DVec3| (p - q).dot(r - q) / (p.distance_squared(q) * r.distance_squared(q)).sqrt();
+        cosine(a, c, b) + cosine(a, d, b) < cosine(c, a, d) + cosine(c, b, d) - 0.1
     }
 
     fn flip_fits(&self, h: u32) -> bool {

@@ -1,0 +1,24 @@
+//! `remesh`: even triangles, boundaries and features kept.
+
+use crate::args::Remesh as Args;
+use crate::failure::Failure;
+use crate::session::{Destination, Session, counts, joint_diagonal};
+use fusion::{remesh, remeshing};
+
+/// Remeshes the input, or a region of it, and writes the result.
+pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
+    let destination = Destination::check(&args.target, session)?;
+    let model = session.read(&args.input, &args.source)?;
+    let models = std::slice::from_ref(&model);
+    let diagonal = joint_diagonal(models);
+    let region = args.region.as_ref().map(|place| place.resolve(diagonal)).transpose()?;
+    let params = remeshing::Params::new(args.edge_length.resolve(diagonal), destination.format)
+        .with_rounds(args.iterations.into())
+        .with_features(args.angle)
+        .within(region);
+    let name = args.input.display();
+    let mut outcome = remesh(&model, &params, session.watch())
+        .map_err(|e| Failure::of(&e, e.to_string().replace("part 0 ", &format!("{name} "))))?;
+    outcome.report.inputs = counts(std::slice::from_ref(&args.input), models);
+    session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
+}
