@@ -48,7 +48,7 @@ impl Params {
 }
 
 /// How often places where the result meets itself are left as they were and the rest remeshed again.
-const RETRIES: i32 = 4;
+const RETRIES: i32 = 10;
 
 /// Remeshes a surface, closed or open. Boundaries and what lies outside the region stay bit for bit.
 ///
@@ -75,7 +75,7 @@ pub fn remesh(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, E
             params.remesh.edge_length,
             places.len() - 1
         ));
-        freeze_near(&mesh, &places, params.remesh.edge_length * 1.5f64.powi(retry), &mut frozen);
+        freeze_near(&mesh, &places, params.remesh.edge_length * 1.3f64.powi(retry), &mut frozen);
         even = report.time("remesh", || once(&mesh, &frozen, params, watch))?;
     }
     measure(&even.mesh, &mut report);
