@@ -1,7 +1,7 @@
 //! What can be typed.
 
 use crate::clustering::Cluster;
-use crate::length::{Length, angle, angle_or_none, direction, mesh_and_loop, point, positive_length, share};
+use crate::length::{Length, angle, angle_or_none, direction, mesh_and_loop, plane, point, positive_length, share, snap};
 use crate::place::Place;
 use crate::rolling::Rolling;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -69,6 +69,10 @@ pub enum Verb {
     Cluster(Cluster),
     /// Make triangles even; boundaries and features are kept
     Remesh(Remesh),
+    /// Take away what lies beyond a plane, leaving a clean opening
+    Cut(Cut),
+    /// Replay a recipe: parts, cuts, poses, joins and blends from one TOML file
+    Run(Run),
     /// Draw a still picture
     Render(Render),
     /// Build the showcase models with their reports and pictures; needs no input
@@ -272,6 +276,40 @@ pub struct Remesh {
     /// Least angle between the normals of two neighbouring faces that makes their edge a feature; 180 keeps none
     #[arg(long, value_name = "DEG", default_value = "40", value_parser = angle_or_none)]
     pub angle: f64,
+}
+
+#[derive(Args)]
+pub struct Cut {
+    /// The mesh to cut, closed or open
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub target: Target,
+    #[command(flatten)]
+    pub source: Source,
+    /// A point of the plane and its normal; the side the normal points away from is kept
+    #[arg(long, value_name = "PX,PY,PZ,NX,NY,NZ", value_parser = plane, allow_hyphen_values = true)]
+    pub plane: (DVec3, DVec3),
+    /// Cut only the contour nearest this point
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub seed: Option<DVec3>,
+    /// Move crossings onto vertices nearer than this share of an edge, which gives openings without short edges
+    #[arg(long, value_name = "SHARE", default_value = "1e-6", value_parser = snap)]
+    pub snap: f64,
+}
+
+#[derive(Args)]
+pub struct Run {
+    /// The recipe, a TOML file (docs/recipes.md); paths in it are relative to it
+    pub recipe: PathBuf,
+    /// Write the result here and not where the recipe says
+    #[arg(short, long, value_name = "OUTPUT")]
+    pub output: Option<PathBuf>,
+    /// Format of the output, where its extension does not tell; needed for `-`
+    #[arg(long, value_name = "FORMAT")]
+    pub to: Option<String>,
+    /// Write where every vertex and face of the result came from, as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub origins: Option<PathBuf>,
 }
 
 #[derive(Args)]

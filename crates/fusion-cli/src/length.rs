@@ -64,6 +64,25 @@ pub fn direction(text: &str) -> Result<DVec3, String> {
     d.try_normalize().ok_or_else(|| "a direction must not be 0,0,0".into())
 }
 
+/// A plane: a point of it and its normal, `px,py,pz,nx,ny,nz`.
+pub fn plane(text: &str) -> Result<(DVec3, DVec3), String> {
+    let numbers: Vec<f64> = text.split(',').map_while(|n| n.trim().parse().ok()).collect();
+    let wrong = || "a plane is a point and a normal other than 0,0,0, such as 0,0,1.5,0,0,1".to_string();
+    if numbers.len() != 6 || text.split(',').count() != 6 || !numbers.iter().all(|n| f64::is_finite(*n)) {
+        return Err(wrong());
+    }
+    let (point, normal) = (DVec3::from_slice(&numbers), DVec3::from_slice(&numbers[3..]));
+    if normal == DVec3::ZERO { Err(wrong()) } else { Ok((point, normal)) }
+}
+
+/// A share of an edge, in [0, 0.25].
+pub fn snap(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(s) if (0.0..=0.25).contains(&s) => Ok(s),
+        _ => Err("must be a number from 0 to 0.25".into()),
+    }
+}
+
 /// An angle in degrees, in (0, 180).
 pub fn angle(text: &str) -> Result<f64, String> {
     match text.parse() {
@@ -115,5 +134,9 @@ mod tests {
             assert!(point(bad).is_err(), "{bad}");
         }
         assert!(direction("0,0,0").is_err());
+        assert_eq!(plane("0,1,2, 0,0,-3"), Ok((DVec3::new(0.0, 1.0, 2.0), DVec3::new(0.0, 0.0, -3.0))));
+        for bad in ["0,0,0,0,0,0", "0,0,1", "0,0,0,0,0,1,2", "0,0,0,0,0,nan", ""] {
+            assert!(plane(bad).is_err(), "{bad}");
+        }
     }
 }

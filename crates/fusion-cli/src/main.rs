@@ -52,6 +52,8 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Verb::Intersection(args) => verbs::join::run(&session, &args, Operation::Intersection),
         Verb::Compose(args) => verbs::compose::run(&session, &args),
         Verb::Remesh(args) => verbs::remesh::run(&session, &args),
+        Verb::Cut(args) => verbs::cut::run(&session, &args),
+        Verb::Run(args) => verbs::run::run(&session, &args),
         Verb::Render(args) => verbs::render::run(&session, &args),
         Verb::Demo(args) => verbs::demo::run(&session, &args),
         Verb::Cluster(args) => verbs::cluster::run(&session, &args),

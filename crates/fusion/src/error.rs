@@ -1,6 +1,6 @@
 //! Why a pipeline gives no result.
 
-use crate::{Invalid, blend, compose};
+use crate::{Invalid, blend, compose, cut, recipe};
 use glam::DVec3;
 use mesh_core::{Cancelled, NotManifold};
 use tri_intersect::EmbedError;
@@ -48,6 +48,20 @@ pub enum Error {
     /// The surface could not be remeshed.
     #[error(transparent)]
     Remesh(#[from] remesh::Error),
+    /// A recipe asks for what is not there.
+    #[error(transparent)]
+    Recipe(#[from] recipe::Error),
+    /// A step of a recipe failed.
+    #[error("{name}: {source}")]
+    Step {
+        /// The step and what it works on.
+        name: String,
+        /// Why.
+        source: Box<Self>,
+    },
+    /// A plane cannot cut.
+    #[error(transparent)]
+    Cut(#[from] cut::Error),
     /// The result failed its own validation; nothing is returned.
     #[error(transparent)]
     Invalid(#[from] Invalid),
@@ -79,13 +93,15 @@ impl Error {
                 _ => None,
             },
             Self::Cluster(error) => error.place(),
+            Self::Cut(error) => error.place(),
+            Self::Step { source, .. } => source.place(),
             Self::Invalid(invalid) => invalid.at,
             Self::Compose(error) => error.place(),
             Self::NoCurve(_, at) => *at,
             Self::Remesh(remesh::Error::NotFinite { place, .. } | remesh::Error::Singular { at: place }) => {
                 Some(*place)
             }
-            Self::Region(_) | Self::Remesh(_) | Self::Blend(_) | Self::TooFew(_) | Self::Cancelled(_) => None,
+            Self::Region(_) | Self::Remesh(_) | Self::Blend(_) | Self::TooFew(_) | Self::Recipe(_) | Self::Cancelled(_) => None,
         }
     }
 
@@ -98,6 +114,7 @@ impl Error {
                 | Self::Blend(blend::Error::Invalid(_))
                 | Self::Boolean { source: B::SelfIntersecting { .. }, .. }
         ) || matches!(self, Self::Compose(error) if error.is_invalid_result())
+            || matches!(self, Self::Step { source, .. } if source.is_invalid_result())
     }
 
     /// Whether the caller asked to stop.
@@ -111,5 +128,7 @@ impl Error {
                 | Self::Remesh(remesh::Error::Cancelled(_))
                 | Self::Boolean { source: B::Cancelled(_), .. }
         ) || matches!(self, Self::Compose(error) if error.is_cancelled())
+            || matches!(self, Self::Cut(error) if error.is_cancelled())
+            || matches!(self, Self::Step { source, .. } if source.is_cancelled())
     }
 }

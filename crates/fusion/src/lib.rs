@@ -16,8 +16,10 @@
 //! | `join.rs` | union, difference and intersection, with blended seams |
 //! | `round.rs` | blends along feature curves |
 //! | `compose/` | openings joined by one smooth surface |
+//! | `cut/` | cuts by planes |
 //! | `blend/` | rolling-ball blends of closed curves |
 //! | `cluster/` | polyhedra rounded cluster by cluster |
+//! | `recipe/` | whole models as TOML files |
 //! | `outcome.rs`, `validity.rs`, `error.rs` | how every pipeline ends |
 //! | `remeshing.rs`, `region.rs` | remeshing of a surface or a region of it; regions |
 //! | `repair.rs` | welding, orientation, taking apart |
@@ -31,6 +33,7 @@ mod attributes;
 pub mod blend;
 pub mod cluster;
 pub mod compose;
+pub mod cut;
 mod error;
 pub mod features;
 mod info;
@@ -38,6 +41,7 @@ pub mod join;
 mod origins_json;
 mod outcome;
 mod palette;
+pub mod recipe;
 mod region;
 pub mod remeshing;
 mod repair;
@@ -46,6 +50,7 @@ pub mod round;
 mod validity;
 
 pub use attributes::carry;
+pub use cut::cut;
 pub use error::Error;
 pub use info::{Defect, Info, Loop};
 pub use join::join;
@@ -56,6 +61,7 @@ pub use palette::palette_index;
 pub use profile_nurbs::Profile;
 pub use region::Region;
 pub use remeshing::remesh;
+pub use recipe::Recipe;
 pub use render;
 pub use repair::{Repair, repair};
 pub use report::{Counts, Quality, Report, Stage, Validity};

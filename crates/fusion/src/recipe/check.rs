@@ -1,0 +1,179 @@
+//! What TOML cannot check: names, ranges, order.
+
+use super::tables::{Part, PartCut};
+use super::values::{Length, Pose, profile};
+use super::{Error, Recipe, Step};
+use crate::blend;
+use crate::cut::PlaneCut;
+use glam::DVec3;
+use std::ops::Range;
+use toml::Spanned;
+use tri_intersect::Operation;
+
+impl Recipe {
+    /// Reads a recipe.
+    ///
+    /// # Errors
+    /// [`Error`], naming line and key: what is no TOML, unknown keys, wrong types, unknown or repeated names, numbers out of range.
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        let mut recipe: Self = toml::from_str(text).map_err(|e| Error::of(text, &e))?;
+        recipe.text = text.to_string();
+        recipe.check()?;
+        Ok(recipe)
+    }
+
+    /// The kinds of steps, in order.
+    pub fn order(&self) -> Vec<Step> {
+        match &self.steps {
+            None => Step::ORDER.to_vec(),
+            Some(steps) => steps.iter().map(|s| *s.get_ref()).filter(|&s| s != Step::Output).collect(),
+        }
+    }
+
+    pub(super) fn error(&self, span: Range<usize>, message: impl Into<String>) -> Error {
+        Error::at(&self.text, span, message)
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        if *self.version.get_ref() != 1 {
+            return Err(self.error(self.version.span(), "this program reads version 1"));
+        }
+        if self.parts.is_empty() {
+            return Err(self.error(0..0, "there is no [[part]]"));
+        }
+        let steps = self.steps.as_deref().unwrap_or_default();
+        for (i, step) in steps.iter().enumerate() {
+            if steps[..i].iter().any(|s| s.get_ref() == step.get_ref()) {
+                return Err(self.error(step.span(), "each kind of step can be named once"));
+            }
+            if *step.get_ref() == Step::Output && i + 1 != steps.len() {
+                return Err(self.error(step.span(), "output is the last step"));
+            }
+        }
+        let mut names: Vec<&str> = vec![];
+        for part in &self.parts {
+            let name = part.name.get_ref().as_str();
+            if names.contains(&name) || name.is_empty() {
+                return Err(self.error(part.name.span(), format!("there is another part `{name}`; names must differ")));
+            }
+            names.push(name);
+            self.pose(part)?;
+            for cut in &part.cut {
+                self.plane(cut)?;
+            }
+        }
+        for (i, boolean) in self.boolean.iter().enumerate() {
+            self.operation(i)?;
+            self.rolling_of_boolean(i, 1.0)?;
+            names.extend(boolean.name.iter().map(|n| n.get_ref().as_str()));
+        }
+        for i in 0..self.blend.len() {
+            self.rolling_of_blend(i, 1.0)?;
+        }
+        let used = self.boolean.iter().flat_map(|b| b.parts.iter().flatten());
+        for name in used.chain(self.blend.iter().filter_map(|b| b.part.as_ref())) {
+            if !names.contains(&name.get_ref().as_str()) {
+                let known = names.join(", ");
+                return Err(self.error(name.span(), format!("there is no part `{}`, only {known}", name.get_ref())));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn pose(&self, part: &Part) -> Result<Pose, Error> {
+        let value = |s: &Option<Spanned<[f64; 3]>>| s.as_ref().map(|s| *s.get_ref());
+        let pose = Pose::new(
+            part.scale.as_ref().map(|s| *s.get_ref()),
+            part.rotate.as_ref().map(|s| *s.get_ref()),
+            value(&part.translate),
+        );
+        let spans = [part.scale.as_ref().map(Spanned::span), part.rotate.as_ref().map(Spanned::span)];
+        pose.ok_or_else(|| {
+            let span = spans.into_iter().flatten().next().unwrap_or(part.name.span());
+            self.error(span, "a pose needs finite numbers, a scale above 0 and an axis other than 0, 0, 0")
+        })
+    }
+
+    pub(super) fn plane(&self, cut: &PartCut) -> Result<PlaneCut, Error> {
+        let plane = cut.plane.get_ref();
+        let (point, normal) = (DVec3::from(plane.point), DVec3::from(plane.normal));
+        if !point.is_finite() || !normal.is_finite() || normal == DVec3::ZERO {
+            return Err(self.error(cut.plane.span(), "a plane needs a finite point and a normal other than 0, 0, 0"));
+        }
+        let mut out = PlaneCut::new(point, normal);
+        out.seed = cut.seed.as_ref().map(|s| DVec3::from(*s.get_ref()));
+        if let Some(snap) = &cut.snap {
+            out.snap = self.within(snap, 0.0, 0.25)?;
+        }
+        Ok(out)
+    }
+
+    pub(super) fn operation(&self, i: usize) -> Result<Operation, Error> {
+        let Some(name) = &self.boolean[i].operation else { return Ok(Operation::Union) };
+        match name.get_ref().as_str() {
+            "union" => Ok(Operation::Union),
+            "difference" => Ok(Operation::Difference),
+            "intersection" => Ok(Operation::Intersection),
+            _ => Err(self.error(name.span(), "an operation is union, difference or intersection")),
+        }
+    }
+
+    /// How the seam of a boolean is blended; `diagonal` is what lengths may be a share of.
+    pub(super) fn rolling_of_boolean(&self, i: usize, diagonal: f64) -> Result<Option<blend::Params>, Error> {
+        let b = &self.boolean[i];
+        match &b.radius {
+            Some(radius) => {
+                self.rolling([&b.profile, &b.overlap], [&b.alpha, &b.tolerance], radius, diagonal).map(Some)
+            }
+            None => Ok(None),
+        }
+    }
+
+    /// How a blend rolls.
+    pub(super) fn rolling_of_blend(&self, i: usize, diagonal: f64) -> Result<blend::Params, Error> {
+        let b = &self.blend[i];
+        self.rolling([&b.profile, &b.overlap], [&b.alpha, &b.tolerance], &b.radius, diagonal)
+    }
+
+    fn rolling(
+        &self,
+        [cross_section, overlap]: [&Option<Spanned<String>>; 2],
+        [alpha, tolerance]: [&Option<Spanned<f64>>; 2],
+        radius: &Spanned<Length>,
+        diagonal: f64,
+    ) -> Result<blend::Params, Error> {
+        let length = radius.get_ref().resolve(diagonal);
+        let length = length.ok_or_else(|| {
+            self.error(radius.span(), "a radius is a number above 0, or a share of the diagonal such as \"2%\"")
+        })?;
+        let mut params = blend::Params::new(length);
+        if let Some(text) = cross_section {
+            params.profile = profile(text.get_ref()).ok_or_else(|| {
+                self.error(text.span(), "a profile is arc, g2, chamfer, sharp, or conic=W with W of 0 or more")
+            })?;
+        }
+        if let Some(text) = overlap {
+            params.overlap = match text.get_ref().as_str() {
+                "shrink" => blend::Overlap::Shrink,
+                "error" => blend::Overlap::Error,
+                _ => return Err(self.error(text.span(), "overlap is shrink or error")),
+            };
+        }
+        if let Some(alpha) = alpha {
+            params.alpha = self.within(alpha, 1.0, 16.0)?;
+        }
+        if let Some(tolerance) = tolerance {
+            params.tolerance = self.within(tolerance, 1e-6, 0.5)?;
+        }
+        Ok(params)
+    }
+
+    pub(super) fn within(&self, value: &Spanned<f64>, least: f64, most: f64) -> Result<f64, Error> {
+        let number = *value.get_ref();
+        if (least..=most).contains(&number) {
+            Ok(number)
+        } else {
+            Err(self.error(value.span(), format!("must be a number from {least} to {most}")))
+        }
+    }
+}

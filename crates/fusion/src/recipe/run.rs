@@ -1,0 +1,298 @@
+//! The steps of a recipe, in order.
+
+use super::{Recipe, Step};
+use crate::cut::{self, cut};
+use crate::features;
+use crate::outcome::{Outcome, Promise, finish_as};
+use crate::{Counts, Error, Report, join, join::join as join_parts, round};
+use glam::DVec3;
+use mesh_core::{Bounds, Faces, Origins, Stage, TriMesh, Watch, bounds};
+use mesh_io::{Format, Model};
+
+/// A part on its way.
+struct Piece {
+    name: String,
+    mesh: TriMesh,
+    /// With respect to the recipe's parts.
+    origins: Origins,
+}
+
+/// Everything on its way.
+struct Kitchen<'a> {
+    recipe: &'a Recipe,
+    /// The parts as they came, posed once the poses have been taken: what origins and attributes refer to.
+    first: Vec<Model>,
+    pieces: Vec<Piece>,
+    format: Format,
+    report: Report,
+    watch: &'a Watch,
+}
+
+impl Recipe {
+    /// Replays the recipe on its parts' contents, in their order. Origins and attributes refer to the parts as posed.
+    ///
+    /// # Errors
+    /// [`Error::Step`], naming the step; [`Error::Recipe`] where what the recipe asks for is not there at that point.
+    pub fn run(&self, parts: &[Model], format: Format, watch: &Watch) -> Result<Outcome, Error> {
+        if parts.len() != self.parts.len() {
+            return Err(self.error(0..0, format!("{} parts are needed", self.parts.len())).into());
+        }
+        let piece = |(i, (part, model)): (usize, (&super::Part, &Model))| Piece {
+            name: part.name.get_ref().clone(),
+            mesh: model.mesh.clone(),
+            origins: Origins::identity(i as u32, model.mesh.vertex_count(), model.mesh.face_count()),
+        };
+        let mut kitchen = Kitchen {
+            recipe: self,
+            first: parts.to_vec(),
+            pieces: self.parts.iter().zip(parts).enumerate().map(piece).collect(),
+            format,
+            report: Report::new("run", parts.iter().map(|m| Counts::of("", &m.mesh)).collect()),
+            watch,
+        };
+        for step in self.order() {
+            match step {
+                Step::Cut => kitchen.cut()?,
+                Step::Pose => kitchen.pose()?,
+                Step::Boolean => kitchen.booleans()?,
+                Step::Blend => kitchen.blends()?,
+                Step::Output => {}
+            }
+        }
+        kitchen.serve()
+    }
+}
+
+impl Kitchen<'_> {
+    fn cut(&mut self) -> Result<(), Error> {
+        for (i, part) in self.recipe.parts.iter().enumerate().filter(|(_, p)| !p.cut.is_empty()) {
+            let cuts = part.cut.iter().map(|c| self.recipe.plane(c)).collect::<Result<Vec<_>, _>>()?;
+            let params = cut::Params::new(cuts, self.format);
+            let model = Model::from(std::mem::take(&mut self.pieces[i].mesh));
+            let name = format!("cut of {}", self.pieces[i].name);
+            let outcome = cut(&model, &params, self.watch).map_err(|e| step(&name, e))?;
+            self.take_up(&[i], vec![model], &name, outcome);
+        }
+        Ok(())
+    }
+
+    fn pose(&mut self) -> Result<(), Error> {
+        for (i, part) in self.recipe.parts.iter().enumerate() {
+            let pose = self.recipe.pose(part)?;
+            self.first[i] = pose.model(std::mem::take(&mut self.first[i]));
+            if let Some(piece) = self.pieces.iter_mut().find(|p| p.name == *part.name.get_ref()) {
+                piece.mesh = pose.mesh(std::mem::take(&mut piece.mesh));
+            }
+        }
+        Ok(())
+    }
+
+    fn booleans(&mut self) -> Result<(), Error> {
+        for (i, boolean) in self.recipe.boolean.iter().enumerate() {
+            let which = match &boolean.parts {
+                None => (0..self.pieces.len()).collect(),
+                Some(names) => names.iter().map(|n| self.find(n)).collect::<Result<Vec<_>, _>>()?,
+            };
+            let params = join::Params {
+                operation: self.recipe.operation(i)?,
+                blend: self.recipe.rolling_of_boolean(i, self.diagonal())?,
+                format: self.format,
+            };
+            let names: Vec<&str> = which.iter().map(|&w| self.pieces[w].name.as_str()).collect();
+            let name = format!("boolean of {}", names.join(", "));
+            let models = self.models(&which);
+            let outcome = join_parts(&models, &params, self.watch).map_err(|e| step(&name, e))?;
+            let result = boolean.name.as_ref().map(|n| n.get_ref().clone());
+            let at = self.take_up(&which, models, &name, outcome);
+            if let Some(result) = result {
+                self.pieces[at].name = result;
+            }
+        }
+        Ok(())
+    }
+
+    fn blends(&mut self) -> Result<(), Error> {
+        for (i, blend) in self.recipe.blend.iter().enumerate() {
+            let at = match &blend.part {
+                Some(name) => self.find(name)?,
+                None => self.only("name the part to blend")?,
+            };
+            let angle = match &blend.angle {
+                Some(angle) => self.recipe.within(angle, 0.1, 179.9)?,
+                None => 40.0,
+            };
+            let params = round::Params {
+                features: features::Params { angle, ..features::Params::default() },
+                near: blend.near.iter().map(|&p| DVec3::from(p)).collect(),
+                blend: self.recipe.rolling_of_blend(i, self.diagonal())?,
+                format: self.format,
+            };
+            let name = format!("blend of {}", self.pieces[at].name);
+            let models = self.models(&[at]);
+            let outcome = round::round(&models[0], &params, self.watch).map_err(|e| step(&name, e))?;
+            self.take_up(&[at], models, &name, outcome);
+        }
+        Ok(())
+    }
+
+    /// Validates and describes the one piece that is left.
+    fn serve(mut self) -> Result<Outcome, Error> {
+        let last = self.only("join what is left over")?;
+        let piece = self.pieces.swap_remove(last);
+        finish_as(Promise::Manifold, &self.first, piece.mesh, piece.origins, self.format, self.report, self.watch)
+    }
+
+    fn models(&self, which: &[usize]) -> Vec<Model> {
+        which.iter().map(|&w| Model::from(self.pieces[w].mesh.clone())).collect()
+    }
+
+    /// Puts a step's result in the place of the pieces it was made of; gives its place.
+    fn take_up(&mut self, which: &[usize], models: Vec<Model>, name: &str, outcome: Outcome) -> usize {
+        let inputs: Vec<&dyn Faces> = self.first.iter().map(|m| &m.mesh as &dyn Faces).collect();
+        let stages: Vec<Stage<'_>> = which
+            .iter()
+            .zip(&models)
+            .map(|(&w, m)| Stage { origins: &self.pieces[w].origins, faces: &m.mesh })
+            .collect();
+        let origins = outcome.origins.compose(&stages, &inputs);
+        let (report, given) = (&mut self.report, outcome.report);
+        report.warnings.extend(given.warnings);
+        report.residuals.extend(given.residuals);
+        report.figures.extend(given.figures);
+        for mut stage in given.stages {
+            stage.name = format!("{name}: {}", stage.name);
+            report.stages.push(stage);
+        }
+        let piece = Piece { name: self.pieces[which[0]].name.clone(), mesh: outcome.model.mesh, origins };
+        let mut gone = which.to_vec();
+        gone.sort_unstable();
+        gone.dedup();
+        for &w in gone.iter().rev() {
+            self.pieces.remove(w);
+        }
+        self.pieces.insert(gone[0], piece);
+        gone[0]
+    }
+
+    fn find(&self, name: &toml::Spanned<String>) -> Result<usize, Error> {
+        self.pieces.iter().position(|p| p.name == *name.get_ref()).ok_or_else(|| {
+            let left = self.pieces.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
+            let message = format!("part `{}` has gone into another by now; there are {left}", name.get_ref());
+            self.recipe.error(name.span(), message).into()
+        })
+    }
+
+    fn only(&self, remedy: &str) -> Result<usize, Error> {
+        if self.pieces.len() == 1 {
+            return Ok(0);
+        }
+        let names = self.pieces.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
+        Err(self.recipe.error(0..0, format!("there are several parts at this point ({names}); {remedy}")).into())
+    }
+
+    /// The diagonal of the box around all pieces, in model units.
+    fn diagonal(&self) -> f64 {
+        self.pieces.iter().map(|p| bounds(&p.mesh)).fold(Bounds::EMPTY, Bounds::union).diagonal()
+    }
+}
+
+fn step(name: &str, source: Error) -> Error {
+    Error::Step { name: name.into(), source: Box::new(source) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Error as Wrong;
+    use super::*;
+    use mesh_core::{VertexOrigin, shapes, volume};
+
+    const HEAD: &str = "version = 1\noutput = \"out.off\"\n";
+
+    fn run(text: &str, parts: &[Model]) -> Result<Outcome, Error> {
+        Recipe::parse(&format!("{HEAD}{text}"))?.run(parts, Format::Off, &Watch::default())
+    }
+
+    fn wrong(text: &str) -> Wrong {
+        Recipe::parse(text).unwrap_err()
+    }
+
+    #[test]
+    fn cut_pose_and_union_in_order() {
+        let (ball, cube) = (Model::from(shapes::icosphere(1.0, 3)), Model::from(shapes::cuboid(DVec3::ONE)));
+        let text = "
+            [[part]]
+            name = \"ball\"
+            mesh = \"ball.off\"
+            scale = 2.0
+            rotate = { axis = [0, 0, 3], angle = 90 }
+            translate = [10.0, 0.0, 0.0]
+            [[part.cut]]
+            plane = { point = [0.5, 0, 0], normal = [1, 0, 0] }
+        ";
+        let posed = run(text, std::slice::from_ref(&ball)).unwrap();
+        // What was cut off at x = 0.5 is, turned and scaled, what lies beyond y = 1.
+        let top = posed.model.mesh.positions.iter().map(|p| p.y).fold(f64::MIN, f64::max);
+        assert!((top - 1.0).abs() < 1e-12, "{top}");
+        for (p, origin) in posed.model.mesh.positions.iter().zip(posed.origins.vertices.as_slice()) {
+            if let VertexOrigin::Input { vertex, .. } = origin {
+                let raw = ball.mesh.positions[vertex.index()];
+                assert!(p.distance(2.0 * DVec3::new(-raw.y, raw.x, raw.z) + 10.0 * DVec3::X) < 1e-14);
+            }
+        }
+        let both = "
+            [[part]]
+            name = \"a\"
+            mesh = \"cube.off\"
+            [[part]]
+            name = \"b\"
+            mesh = \"cube.off\"
+            translate = [0.5, 0.5, 0.5]
+            [[boolean]]
+            operation = \"difference\"
+            parts = [\"b\", \"a\"]
+        ";
+        let rest = run(both, &[cube.clone(), cube.clone()]).unwrap();
+        assert!((volume(&rest.model.mesh) - 0.875).abs() < 1e-14);
+        // The same bits where nothing was posed.
+        let same = run("[[part]]\nname = \"a\"\nmesh = \"cube.off\"", std::slice::from_ref(&cube)).unwrap();
+        assert_eq!(same.model.mesh, cube.mesh);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_by_line_and_key() {
+        for (text, line, key, says) in [
+            ("version = 2\noutput = \"a.off\"", 1, "version", "version 1"),
+            ("version = 1\noutput = \"a.off\"\nfoo = 3", 3, "foo", "unknown field"),
+            ("version = 1\noutput = 7", 2, "output", "string"),
+            ("version = 1\noutput = \"a.off\"", 1, "version", "[[part]]"),
+            ("version = 1\noutput = \"a.off\"\n[[part]]\nname = \"a\"\nmesh = \"a.off\"\nscale = 0.0", 6, "scale", "above 0"),
+            (
+                "version = 1\noutput = \"a.off\"\n[[part]]\nname = \"a\"\nmesh = \"a.off\"\n[[boolean]]\nparts = [\"a\",\n \"b\"]",
+                8,
+                "\"b\"",
+                "no part `b`",
+            ),
+            (
+                "version = 1\noutput = \"a.off\"\nsteps = [\"cut\", \"cut\"]\n[[part]]\nname = \"a\"\nmesh = \"a.off\"",
+                3,
+                "steps",
+                "once",
+            ),
+        ] {
+            let error = wrong(text);
+            assert_eq!((error.line, error.key.as_str()), (line, key), "{error}");
+            assert!(error.message.contains(says), "{error}");
+        }
+    }
+
+    #[test]
+    fn leftovers_and_spent_parts_are_refused() {
+        let cube = Model::from(shapes::cuboid(DVec3::ONE));
+        let two = "[[part]]\nname = \"a\"\nmesh = \"c.off\"\n[[part]]\nname = \"b\"\nmesh = \"c.off\"\ntranslate = [0.5, 0.3, 0.2]\n";
+        let error = run(two, &[cube.clone(), cube.clone()]).unwrap_err();
+        assert!(matches!(&error, Error::Recipe(e) if e.message.contains("a, b")), "{error}");
+        let spent = format!("{two}[[boolean]]\n[[blend]]\npart = \"b\"\nradius = 0.1\n");
+        let error = run(&spent, &[cube.clone(), cube]).unwrap_err();
+        assert!(matches!(&error, Error::Recipe(e) if e.message.contains("by now")), "{error}");
+    }
+}

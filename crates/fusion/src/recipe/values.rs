@@ -1,0 +1,100 @@
+//! Values in recipes.
+
+use glam::{DQuat, DVec3};
+use mesh_core::TriMesh;
+use mesh_io::Model;
+use profile_nurbs::Profile;
+use serde::Deserialize;
+
+/// A length: model units, or a share of the diagonal of the box around all parts as posed, such as `"2%"`.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(untagged)]
+pub enum Length {
+    /// Model units.
+    Units(f64),
+    /// `"2%"`.
+    Share(String),
+}
+
+impl Length {
+    /// In model units, if it is a positive length at all.
+    pub fn resolve(&self, diagonal: f64) -> Option<f64> {
+        let length = match self {
+            Self::Units(length) => *length,
+            Self::Share(text) => text.strip_suffix('%')?.trim().parse::<f64>().ok()? / 100.0 * diagonal,
+        };
+        (length > 0.0 && length.is_finite()).then_some(length)
+    }
+}
+
+/// A turn about an axis through the origin.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Rotation {
+    /// The axis, of any length.
+    pub axis: DVec3Array,
+    /// Degrees, counter-clockwise seen against the axis.
+    pub angle: f64,
+}
+
+/// Three numbers.
+pub type DVec3Array = [f64; 3];
+
+/// A similarity: p ↦ rotation · (scale · p) + translation, in this order, in 64-bit arithmetic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pose {
+    pub(super) scale: f64,
+    pub(super) rotation: DQuat,
+    pub(super) translation: DVec3,
+}
+
+impl Pose {
+    /// The pose of a part's table; `None` for one that is none.
+    pub(super) fn new(scale: Option<f64>, rotate: Option<Rotation>, translate: Option<DVec3Array>) -> Option<Self> {
+        let scale = scale.unwrap_or(1.0);
+        let rotation = match rotate {
+            None => DQuat::IDENTITY,
+            Some(r) => DQuat::from_axis_angle(DVec3::from(r.axis).try_normalize()?, r.angle.to_radians()),
+        };
+        let translation = DVec3::from(translate.unwrap_or_default());
+        let usable = scale > 0.0 && scale.is_finite() && rotation.is_finite() && translation.is_finite();
+        usable.then_some(Self { scale, rotation, translation })
+    }
+
+    fn is_identity(&self) -> bool {
+        self.scale == 1.0 && self.rotation == DQuat::IDENTITY && self.translation == DVec3::ZERO
+    }
+
+    /// Poses a mesh. Identity leaves every bit.
+    pub(super) fn mesh(&self, mut mesh: TriMesh) -> TriMesh {
+        if !self.is_identity() {
+            for p in &mut mesh.positions {
+                *p = self.rotation * (self.scale * *p) + self.translation;
+            }
+        }
+        mesh
+    }
+
+    /// Poses a file's contents.
+    pub(super) fn model(&self, mut model: Model) -> Model {
+        if let Some(normals) = &mut model.normals {
+            normals.as_mut_slice().iter_mut().for_each(|n| *n = self.rotation * *n);
+        }
+        model.mesh = self.mesh(std::mem::take(&mut model.mesh));
+        model
+    }
+}
+
+/// A profile by its name on the command line.
+pub(super) fn profile(text: &str) -> Option<Profile> {
+    match text {
+        "arc" => Some(Profile::Arc),
+        "g2" => Some(Profile::G2),
+        "chamfer" => Some(Profile::Chamfer),
+        "sharp" => Some(Profile::Sharp),
+        _ => {
+            let weight: f64 = text.strip_prefix("conic=")?.parse().ok()?;
+            (weight.is_finite() && weight >= 0.0).then_some(Profile::Conic(weight))
+        }
+    }
+}
