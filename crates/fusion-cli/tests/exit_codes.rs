@@ -35,6 +35,10 @@ fn code_2_for_wrong_usage() {
         "union a.off b.off -o out.off --radius 0",
         "union - - --from off -o out.off",
         "render a.off -o a.png --view 0,0,0",
+        "cut a.off -o out.off",
+        "cut a.off -o out.off --plane 0,0,0,0,0,0",
+        "cut a.off -o out.off --plane 0,0,0,0,0,1 --snap 0.5",
+        "run",
     ] {
         let run = bench.run(line).expect(2);
         assert!(!run.stderr.is_empty(), "{line}");

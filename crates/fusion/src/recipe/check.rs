@@ -1,11 +1,13 @@
 //! What TOML cannot check: names, ranges, order.
 
+use super::rims::split_loop;
 use super::tables::{Part, PartCut};
 use super::values::{Length, Pose, profile};
 use super::{Error, Recipe, Step};
-use crate::blend;
 use crate::cut::PlaneCut;
+use crate::{blend, compose};
 use glam::DVec3;
+use mesh_io::Format;
 use std::ops::Range;
 use toml::Spanned;
 use tri_intersect::Operation;
@@ -67,6 +69,19 @@ impl Recipe {
             self.rolling_of_boolean(i, 1.0)?;
             names.extend(boolean.name.iter().map(|n| n.get_ref().as_str()));
         }
+        for (i, compose) in self.compose.iter().enumerate() {
+            self.composing(i, 1.0, Format::Off)?;
+            names.extend(compose.name.iter().map(|n| n.get_ref().as_str()));
+            for name in compose.loops.iter().flatten() {
+                let part = split_loop(name.get_ref()).map_or("", |l| l.0);
+                if !names.contains(&part) {
+                    let known = names.join(", ");
+                    let message =
+                        format!("a loop is \"part:0\", or \"part\" for all of its loops, of one of the parts {known}");
+                    return Err(self.error(name.span(), message));
+                }
+            }
+        }
         for i in 0..self.blend.len() {
             self.rolling_of_blend(i, 1.0)?;
         }
@@ -116,6 +131,46 @@ impl Recipe {
             "intersection" => Ok(Operation::Intersection),
             _ => Err(self.error(name.span(), "an operation is union, difference or intersection")),
         }
+    }
+
+    /// How openings are joined; which ones is left open.
+    pub(super) fn composing(&self, i: usize, diagonal: f64, format: Format) -> Result<compose::Params, Error> {
+        let c = &self.compose[i];
+        let mut params = compose::Params::new(format);
+        if let Some(text) = &c.method {
+            params.method = match text.get_ref().as_str() {
+                "implicit" => compose::Method::Implicit,
+                "montage" => compose::Method::Montage,
+                _ => return Err(self.error(text.span(), "a method is implicit or montage")),
+            };
+        }
+        if let Some(text) = &c.kernel {
+            params.kernel = match text.get_ref().as_str() {
+                "biharmonic" => compose::Kernel::Biharmonic,
+                "triharmonic" => compose::Kernel::Triharmonic,
+                "hermite" => compose::Kernel::Hermite,
+                _ => return Err(self.error(text.span(), "a kernel is triharmonic, biharmonic or hermite")),
+            };
+        }
+        if let Some(rings) = &c.rings {
+            if *rings.get_ref() > 16 {
+                return Err(self.error(rings.span(), "must be a number from 0 to 16"));
+            }
+            params.rings = Some(usize::from(*rings.get_ref()));
+        }
+        if let Some(cell) = &c.cell {
+            params.cell = self.within(cell, f64::MIN_POSITIVE, 1e6)?;
+        }
+        if let Some(length) = &c.edge_length {
+            let resolved = length.get_ref().resolve(diagonal);
+            params.edge_length = Some(resolved.ok_or_else(|| {
+                self.error(length.span(), "a length is a number above 0, or a share of the diagonal such as \"2%\"")
+            })?);
+        }
+        if let Some(space) = &c.space {
+            params.space = self.within(space, f64::MIN_POSITIVE, 1e6)?;
+        }
+        Ok(params)
     }
 
     /// How the seam of a boolean is blended; `diagonal` is what lengths may be a share of.

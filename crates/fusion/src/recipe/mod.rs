@@ -28,14 +28,16 @@
 //! | `values.rs` | vectors, lengths, poses, profiles |
 //! | `check.rs` | what TOML cannot check: names, ranges |
 //! | `run.rs` | the steps, in order |
+//! | `rims.rs` | openings by the names of the parts they came with |
 //! | `error.rs` | what is wrong with a recipe, by line and key |
 
 mod check;
 mod error;
+mod rims;
 mod run;
 mod tables;
 mod values;
 
 pub use error::Error;
-pub use tables::{Blend, Boolean, Part, PartCut, Plane, Recipe, Step};
+pub use tables::{Blend, Boolean, Compose, Part, PartCut, Plane, Recipe, Step};
 pub use values::{Length, Rotation};

@@ -1,6 +1,8 @@
 //! The steps of a recipe, in order.
 
+use super::rims::{self, Rims, split_loop};
 use super::{Recipe, Step};
+use crate::compose::compose;
 use crate::cut::{self, cut};
 use crate::features;
 use crate::outcome::{Outcome, Promise, finish_as};
@@ -23,6 +25,8 @@ struct Kitchen<'a> {
     /// The parts as they came, posed once the poses have been taken: what origins and attributes refer to.
     first: Vec<Model>,
     pieces: Vec<Piece>,
+    /// The loops that parts and results had when they were named.
+    rims: Vec<Rims>,
     format: Format,
     report: Report,
     watch: &'a Watch,
@@ -46,6 +50,7 @@ impl Recipe {
             recipe: self,
             first: parts.to_vec(),
             pieces: self.parts.iter().zip(parts).enumerate().map(piece).collect(),
+            rims: vec![],
             format,
             report: Report::new("run", parts.iter().map(|m| Counts::of("", &m.mesh)).collect()),
             watch,
@@ -55,6 +60,7 @@ impl Recipe {
                 Step::Cut => kitchen.cut()?,
                 Step::Pose => kitchen.pose()?,
                 Step::Boolean => kitchen.booleans()?,
+                Step::Compose => kitchen.composes()?,
                 Step::Blend => kitchen.blends()?,
                 Step::Output => {}
             }
@@ -109,6 +115,67 @@ impl Kitchen<'_> {
             }
         }
         Ok(())
+    }
+
+    fn composes(&mut self) -> Result<(), Error> {
+        self.name_rims(0);
+        for (i, table) in self.recipe.compose.iter().enumerate() {
+            let mut params = self.recipe.composing(i, self.diagonal(), self.format)?;
+            let mut which: Vec<usize> = (0..self.pieces.len()).collect();
+            if let Some(names) = &table.loops {
+                let mut chosen = vec![];
+                for name in names {
+                    chosen.extend(self.loops_of(name)?);
+                }
+                which = chosen.iter().map(|c| c.0).collect();
+                which.sort_unstable();
+                which.dedup();
+                let place = |w: usize| which.binary_search(&w).unwrap_or(0);
+                params.loops = Some(chosen.iter().map(|&(w, l)| (place(w), l)).collect());
+            }
+            let names: Vec<&str> = which.iter().map(|&w| self.pieces[w].name.as_str()).collect();
+            let name = format!("compose of {}", names.join(", "));
+            let models = self.models(&which);
+            let outcome = compose(&models, &params, self.watch).map_err(|e| step(&name, e))?;
+            let at = self.take_up(&which, models, &name, outcome);
+            if let Some(result) = &table.name {
+                self.pieces[at].name.clone_from(result.get_ref());
+            }
+            self.name_rims(at);
+        }
+        Ok(())
+    }
+
+    /// Numbers the loops of pieces from `first` on that go by a new name.
+    fn name_rims(&mut self, first: usize) {
+        for piece in &self.pieces[first..] {
+            if self.rims.iter().all(|r| r.part != piece.name) {
+                self.rims.push(Rims::of(&piece.name, &piece.mesh, &piece.origins));
+            }
+        }
+    }
+
+    /// The loops that a recipe names, as piece and loop by their present numbers.
+    fn loops_of(&self, text: &toml::Spanned<String>) -> Result<Vec<(usize, usize)>, Error> {
+        let wrong = |message: String| -> Error { self.recipe.error(text.span(), message).into() };
+        let (part, number) = split_loop(text.get_ref()).unwrap_or_default();
+        let Some(rims) = self.rims.iter().find(|r| r.part == part) else {
+            return Err(wrong(format!("there is no part `{part}` at this point")));
+        };
+        let marks = match number {
+            None => &rims.marks[..],
+            Some(n) => rims.marks.get(n..=n).ok_or_else(|| {
+                wrong(format!("part `{part}` has {} loops, so there is no loop {n}", rims.marks.len()))
+            })?,
+        };
+        let present = marks.iter().filter_map(|mark| {
+            self.pieces.iter().enumerate().find_map(|(w, p)| Some((w, rims::find(&p.mesh, &p.origins, mark)?)))
+        });
+        let present: Vec<_> = present.collect();
+        if present.is_empty() || number.is_some() && present.len() != marks.len() {
+            return Err(wrong(format!("`{}` is not open at this point", text.get_ref())));
+        }
+        Ok(present)
     }
 
     fn blends(&mut self) -> Result<(), Error> {
@@ -265,7 +332,12 @@ mod tests {
             ("version = 1\noutput = \"a.off\"\nfoo = 3", 3, "foo", "unknown field"),
             ("version = 1\noutput = 7", 2, "output", "string"),
             ("version = 1\noutput = \"a.off\"", 1, "version", "[[part]]"),
-            ("version = 1\noutput = \"a.off\"\n[[part]]\nname = \"a\"\nmesh = \"a.off\"\nscale = 0.0", 6, "scale", "above 0"),
+            (
+                "version = 1\noutput = \"a.off\"\n[[part]]\nname = \"a\"\nmesh = \"a.off\"\nscale = 0.0",
+                6,
+                "scale",
+                "above 0",
+            ),
             (
                 "version = 1\noutput = \"a.off\"\n[[part]]\nname = \"a\"\nmesh = \"a.off\"\n[[boolean]]\nparts = [\"a\",\n \"b\"]",
                 8,
@@ -283,6 +355,34 @@ mod tests {
             assert_eq!((error.line, error.key.as_str()), (line, key), "{error}");
             assert!(error.message.contains(says), "{error}");
         }
+    }
+
+    /// One tube joined to two balls, one end after the other: the second join names a loop of a part that the first has used up.
+    #[test]
+    fn openings_are_named_by_their_parts_through_several_joins() {
+        let part = |name: &str, mesh: &str, at: f64, normal: f64| {
+            format!(
+                "[[part]]\nname = \"{name}\"\nmesh = \"{mesh}.off\"\ntranslate = [0, 0, {at:?}]\n[[part.cut]]\nplane = {{ point = [0, 0, {:?}], normal = [0, 0, {normal:?}] }}\n",
+                0.8 * normal
+            )
+        };
+        let text = [
+            part("low", "ball", -2.5, 1.0),
+            "[[part]]\nname = \"tube\"\nmesh = \"tube.off\"\n".into(),
+            part("high", "ball", 2.5, -1.0),
+            "[[compose]]\nloops = [\"low:0\", \"tube:0\"]\n[[compose]]\nloops = [\"tube:1\", \"high\"]\nname = \"all\"\n".into(),
+        ]
+        .concat();
+        let (ball, tube) = (shapes::icosphere(1.0, 3), shapes::open_cylinder(0.6, 1.6, 24, 8));
+        let middle = 0.5 * (bounds(&tube).min.z + bounds(&tube).max.z);
+        let tube = shapes::posed(tube, glam::DQuat::IDENTITY, DVec3::NEG_Z * middle);
+        // Whichever end of the tube is loop 0.
+        let turned = text.replace("tube:0", "tube:x").replace("tube:1", "tube:0").replace("tube:x", "tube:1");
+        let parts = [Model::from(ball.clone()), Model::from(tube), Model::from(ball)];
+        let both = [run(&text, &parts), run(&turned, &parts)];
+        let whole = both.into_iter().find_map(Result::ok).expect("one of the two ends is near");
+        assert_eq!(whole.report.validity.closed, Some(true));
+        assert_eq!(crate::Info::of(&whole.model.mesh, &Watch::default()).unwrap().genus, Some(0));
     }
 
     #[test]

@@ -13,7 +13,7 @@ pub struct Recipe {
     pub version: Spanned<u32>,
     /// Where the result goes, relative to the recipe.
     pub output: PathBuf,
-    /// The kinds of steps in another order than cut, pose, boolean, blend. Kinds left out are not taken.
+    /// The kinds of steps in another order than cut, pose, boolean, compose, blend. Kinds left out are not taken.
     pub steps: Option<Vec<Spanned<Step>>>,
     /// The parts.
     #[serde(default, rename = "part")]
@@ -21,6 +21,9 @@ pub struct Recipe {
     /// Booleans.
     #[serde(default)]
     pub boolean: Vec<Boolean>,
+    /// Joins of openings.
+    #[serde(default)]
+    pub compose: Vec<Compose>,
     /// Blends along feature curves.
     #[serde(default)]
     pub blend: Vec<Blend>,
@@ -39,6 +42,8 @@ pub enum Step {
     Pose,
     /// Booleans between parts.
     Boolean,
+    /// Joins of openings by smooth surfaces.
+    Compose,
     /// Blends along feature curves.
     Blend,
     /// Writing. Always the last.
@@ -47,7 +52,7 @@ pub enum Step {
 
 impl Step {
     /// The order of steps where a recipe names none.
-    pub const ORDER: [Self; 4] = [Self::Cut, Self::Pose, Self::Boolean, Self::Blend];
+    pub const ORDER: [Self; 5] = [Self::Cut, Self::Pose, Self::Boolean, Self::Compose, Self::Blend];
 }
 
 /// One input.
@@ -111,6 +116,29 @@ pub struct Boolean {
     pub alpha: Option<Spanned<f64>>,
     /// As for a blend.
     pub tolerance: Option<Spanned<f64>>,
+}
+
+/// A join of openings by one smooth surface.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Compose {
+    /// The openings, as `"part:loop"`, loops counted from 0 as `info` lists them for the part after its cuts; `"part"` alone is all of its
+    /// loops. All open boundaries of all parts where left out.
+    pub loops: Option<Vec<Spanned<String>>>,
+    /// `"implicit"` (the default) or `"montage"`.
+    pub method: Option<Spanned<String>>,
+    /// `"triharmonic"` (the default), `"biharmonic"` or `"hermite"`.
+    pub kernel: Option<Spanned<String>>,
+    /// See [`crate::compose::Params::rings`].
+    pub rings: Option<Spanned<u8>>,
+    /// See [`crate::compose::Params::cell`].
+    pub cell: Option<Spanned<f64>>,
+    /// See [`crate::compose::Params::edge_length`].
+    pub edge_length: Option<Spanned<Length>>,
+    /// See [`crate::compose::Params::space`].
+    pub space: Option<Spanned<f64>>,
+    /// What the result is called. The name of the first part joined where left out.
+    pub name: Option<Spanned<String>>,
 }
 
 /// A blend along feature curves.

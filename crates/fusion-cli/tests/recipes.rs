@@ -1,0 +1,81 @@
+//! `cut` and `run`, seen from outside.
+
+mod support;
+
+use serde_json::Value;
+use support::Bench;
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+const HALVES: &str = r#"
+version = 1
+output = "built/out.off"
+
+[[part]]
+name = "a"
+mesh = "../a.off"
+
+[[part]]
+name = "b"
+mesh = "../a.off"
+translate = [0.5, 0.25, 0.125]
+
+[[boolean]]
+operation = "union"
+"#;
+
+#[test]
+fn a_cut_leaves_one_clean_opening() {
+    let bench = Bench::new();
+    bench.run("cut a.off -o half.off --plane 0,0,0.25,0,0,1 --report r.json --origins o.json").expect(0);
+    let info = json(bench.run("info half.off --json").expect(0).text());
+    assert_eq!(info["loops"].as_array().map(Vec::len), Some(1), "{info}");
+    assert_eq!(info["self_intersections"], 0);
+    let report = json(&bench.read("r.json"));
+    assert_eq!((&report["command"], &report["kept_vertices"]), (&"cut".into(), &4.into()));
+    assert_eq!((&report["validity"]["closed"], report["figures"]["rims"].as_f64()), (&false.into(), Some(1.0)));
+    assert!(json(&bench.read("o.json"))["vertices"].as_array().is_some_and(|v| v.iter().any(|o| o[0] == "edge")));
+}
+
+#[test]
+fn a_plane_that_misses_says_where_the_mesh_is() {
+    let bench = Bench::new();
+    let run = bench.run("cut a.off -o out.off --plane 0,0,7,0,0,1").expect(4);
+    assert!(run.stderr.contains("from -7 to -6"), "{}", run.stderr);
+    assert_eq!(bench.files(), ["a.off", "b.off"]);
+}
+
+#[test]
+fn recipes_run_relative_to_themselves() {
+    let bench = Bench::new();
+    std::fs::create_dir_all(bench.path("made/built")).unwrap();
+    bench.file("made/recipe.toml", HALVES);
+    bench.run("run made/recipe.toml --report r.json").expect(0);
+    let info = json(bench.run("info made/built/out.off --json").expect(0).text());
+    let shared = 0.5 * 0.75 * 0.875;
+    assert!((info["volume"].as_f64().unwrap() - (2.0 - shared)).abs() < 1e-12);
+    assert_eq!(json(&bench.read("r.json"))["command"], "run");
+    bench.run("run made/recipe.toml -o here.ply").expect(0);
+    assert!(bench.path("here.ply").exists());
+}
+
+#[test]
+fn malformed_recipes_exit_with_3_line_and_key() {
+    let bench = Bench::new();
+    std::fs::create_dir_all(bench.path("made/built")).unwrap();
+    for (from, to, words) in [
+        ("operation", "opperation", "line 15, `opperation`"),
+        ("\"union\"", "\"fusion\"", "line 15, `operation`"),
+        ("version = 1", "version = 3", "line 2, `version`"),
+        ("mesh = \"../a.off\"", "mesh = \"../none.off\"", "none.off"),
+        ("[0.5, 0.25, 0.125]", "[0.5, 0.25]", "line 12, `translate`"),
+    ] {
+        bench.file("made/recipe.toml", &HALVES.replace(from, to));
+        let run = bench.run("run made/recipe.toml").expect(3);
+        assert!(run.stderr.contains(words), "{words}: {}", run.stderr);
+    }
+    let missing = bench.run("run nowhere.toml").expect(3);
+    assert!(missing.stderr.contains("nowhere.toml"));
+}
