@@ -1,7 +1,9 @@
 //! What can be typed.
 
 use crate::clustering::Cluster;
-use crate::length::{Length, angle, angle_or_none, direction, mesh_and_loop, plane, point, positive_length, share, snap};
+use crate::length::{
+    Length, angle, angle_or_none, direction, mesh_and_loop, plane, point, positive_length, share, snap,
+};
 use crate::place::Place;
 use crate::rolling::Rolling;
 use clap::{Args, Parser, Subcommand, ValueEnum};

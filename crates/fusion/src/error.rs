@@ -101,7 +101,12 @@ impl Error {
             Self::Remesh(remesh::Error::NotFinite { place, .. } | remesh::Error::Singular { at: place }) => {
                 Some(*place)
             }
-            Self::Region(_) | Self::Remesh(_) | Self::Blend(_) | Self::TooFew(_) | Self::Recipe(_) | Self::Cancelled(_) => None,
+            Self::Region(_)
+            | Self::Remesh(_)
+            | Self::Blend(_)
+            | Self::TooFew(_)
+            | Self::Recipe(_)
+            | Self::Cancelled(_) => None,
         }
     }
 
