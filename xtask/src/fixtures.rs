@@ -1,6 +1,6 @@
 //! The parts of all regression cases as files, to look at or to try the command line on.
 
-use crate::regress::posed_parts;
+use crate::regress::{cluster::polyhedra, posed_parts};
 use crate::{Fault, root};
 use mesh_io::Model;
 use std::fs;
@@ -14,7 +14,7 @@ pub struct Options {
     output: PathBuf,
 }
 
-/// Writes every part as double-precision PLY.
+/// Writes every part as double-precision PLY, and every polyhedron as OBJ with its clusters beside it.
 pub fn run(options: &Options) -> Result<(), Fault> {
     let folder = root().join(&options.output);
     fs::create_dir_all(&folder)?;
@@ -24,6 +24,11 @@ pub fn run(options: &Options) -> Result<(), Fault> {
             mesh_io::write(&Model::from(mesh), &folder.join(format!("{name}-{i}.ply")))?;
             count += 1;
         }
+    }
+    for (name, polyhedron, clusters) in polyhedra() {
+        mesh_io::write(&polyhedron, &folder.join(format!("{name}.obj")))?;
+        fs::write(folder.join(format!("{name}.toml")), clusters)?;
+        count += 1;
     }
     println!("fixtures: wrote {count} models to {}", folder.display());
     Ok(())

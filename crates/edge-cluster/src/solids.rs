@@ -123,6 +123,51 @@ pub fn door_knob() -> Solid {
     solid
 }
 
+/// A convex-concave polyhedron without symmetry: similar star-shaped polygons of random outline, size and height on top
+/// of each other, the top one tilted if there are only two.
+pub fn convex_concave(seed: u64) -> Solid {
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    let mut random = |low: f64, high: f64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let corners = 6 + 2 * (seed % 3) as usize;
+    let outline: Vec<DVec3> = (0..corners)
+        .map(|i| {
+            let angle = TAU * (i as f64 + random(-0.1, 0.1)) / corners as f64;
+            // Every other corner lies inside the line between its neighbours.
+            let radius = if i % 2 == 1 { random(0.6, 0.9) * (TAU / corners as f64).cos() } else { random(0.95, 1.2) };
+            DVec3::new(radius * angle.cos(), radius * angle.sin(), 0.0)
+        })
+        .collect();
+    let levels = 2 + (seed % 3) as usize;
+    let tilt = if levels == 2 { [random(-0.2, 0.2), random(-0.2, 0.2)] } else { [0.0; 2] };
+    let rings: Vec<Vec<DVec3>> = (0..levels)
+        .map(|level| {
+            let (size, top) = (if levels == 2 { 1.0 } else { random(0.6, 1.3) }, level + 1 == levels);
+            let height = 0.9 * level as f64 + random(0.0, 0.2);
+            let lift = |p: &DVec3| if top { tilt[0] * p.x + tilt[1] * p.y } else { 0.0 };
+            outline.iter().map(|p| DVec3::new(size * p.x, size * p.y, height + lift(p))).collect()
+        })
+        .collect();
+    let mut solid = Solid::stack(&rings);
+    // The caps are not convex: triangles around a middle, which is in their plane and so no vertex of the polyhedron.
+    let n = corners as u32;
+    let caps = [solid.polygons.remove(0), solid.polygons.pop().unwrap_or_default()];
+    for cap in caps {
+        let ring: Vec<DVec3> = cap.iter().map(|&v| solid.positions[v as usize]).collect();
+        let height = if cap.contains(&0) {
+            ring[0].z
+        } else {
+            rings[levels - 1][0].z - tilt[0] * outline[0].x - tilt[1] * outline[0].y
+        };
+        solid.positions.push(DVec3::new(0.0, 0.0, height));
+        let middle = solid.positions.len() as u32 - 1;
+        solid.polygons.extend((0..n as usize).map(|i| vec![cap[i], cap[(i + 1) % cap.len()], middle]));
+    }
+    solid
+}
+
 /// The five Platonic and thirteen Archimedean solids, by name.
 pub fn regular() -> Vec<(&'static str, Solid)> {
     let f = 0.5 * (1.0 + 5f64.sqrt());

@@ -4,12 +4,14 @@
 //! |---|---|
 //! | `case.rs` | cases as files |
 //! | `golden.rs` | approved records |
+//! | `cluster.rs` | polyhedra rounded by clusters |
 //! | `join.rs` | one job through the library |
 //! | `pairs.rs`, `pose.rs` | pairs of real models in random poses |
 //! | `nasty.rs` | broken files through the command line |
 //! | `reference.rs` | results checked by another library |
 
 mod case;
+pub mod cluster;
 mod golden;
 mod join;
 mod nasty;
@@ -43,7 +45,8 @@ pub struct Options {
 /// Runs all that is asked for and fails if anything is wrong.
 pub fn run(options: &Options) -> Result<(), Fault> {
     let mut reference = if options.reference { Some(Reference::new()?) } else { None };
-    let mut faults = cases(options.bless, &mut reference)?;
+    let mut faults = cluster::run(options.bless, &mut reference)?;
+    faults += cases(options.bless, &mut reference)?;
     if let Some(models) = &options.models {
         faults += nasty::run(&models.join("nasty"))?;
         faults += pairs::run(models, options.quick, &mut reference)?;

@@ -9,6 +9,7 @@
 mod file;
 mod nets;
 
+pub use edge_cluster::solids;
 pub use edge_cluster::{CoverParams, Degree, Params as PatchParams, PolyhedronParams, Spec, StripParams};
 pub use file::{FileError, clusters_from_toml};
 
