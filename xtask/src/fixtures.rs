@@ -27,7 +27,9 @@ pub fn run(options: &Options) -> Result<(), Fault> {
     }
     for (name, polyhedron, clusters) in polyhedra() {
         mesh_io::write(&polyhedron, &folder.join(format!("{name}.obj")))?;
-        fs::write(folder.join(format!("{name}.toml")), clusters)?;
+        if let Some(clusters) = clusters {
+            fs::write(folder.join(format!("{name}.toml")), clusters)?;
+        }
         count += 1;
     }
     println!("fixtures: wrote {count} models to {}", folder.display());

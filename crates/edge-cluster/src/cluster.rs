@@ -85,6 +85,21 @@ impl Cluster {
         format!("{{{}+{}}}", self.vertices.len(), self.sides())
     }
 
+    /// Whether the face of side k is reflex at the cluster: whether its boundary, followed with the face to the left,
+    /// turns right altogether from open edge k + 1 over the backbone to open edge k.
+    pub fn is_hollow(&self, solid: &Polyhedron, k: usize) -> bool {
+        let normal = solid.plane(self.open[k]).normal;
+        let walk = &self.walks[k];
+        let mut before = -solid.vector(self.open[(k + 1) % self.sides()]);
+        let backbone = walk.windows(2).rev().map(|w| solid.positions[w[0] as usize] - solid.positions[w[1] as usize]);
+        let mut turn = 0.0;
+        for after in backbone.chain([solid.vector(self.open[k])]) {
+            turn += before.cross(after).dot(normal).atan2(before.dot(after));
+            before = after;
+        }
+        turn < 0.0
+    }
+
     /// Length of the backbone along side k, in model units.
     pub fn backbone_length(&self, solid: &Polyhedron, k: usize) -> f64 {
         let at = |v: u32| solid.positions[v as usize];

@@ -127,6 +127,32 @@ impl Shape {
         }
     }
 
+    /// How far a control point is from corner k, counting from 0: steps along side k, along side k − 1, and in other
+    /// directions.
+    pub fn steps_from(self, index: &[u8], k: usize) -> [usize; 3] {
+        let at = |i: usize| usize::from(index[i]);
+        match self {
+            Self::Tensor([a, b]) => match k {
+                0 => [at(0), at(1), 0],
+                1 => [at(1), a - at(0), 0],
+                2 => [a - at(0), b - at(1), 0],
+                _ => [b - at(1), at(0), 0],
+            },
+            Self::Simplex { sides, degree } => {
+                let (ahead, behind) = (at((k + 1) % sides), at((k + sides - 1) % sides));
+                [ahead, behind, degree - at(k) - ahead - behind]
+            }
+        }
+    }
+
+    /// How many steps side k is long.
+    pub fn side_degree(self, k: usize) -> usize {
+        match self {
+            Self::Tensor(degrees) => degrees[k % 2],
+            Self::Simplex { degree, .. } => degree,
+        }
+    }
+
     /// Whether the control point with this index is in F_k for side k, counting from 0: whether it decides on contact of
     /// order `g` there ([EdgeCluster2019] §2, eq. 7).
     ///

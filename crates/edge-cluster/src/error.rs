@@ -101,6 +101,14 @@ pub enum Error {
     /// An edge was named that does not exist.
     #[error("there is no edge between vertices {0} and {1}")]
     NoEdge(u32, u32),
+    /// Strips have no STEP entity.
+    #[error(
+        "STEP has no entity for the {strips} strips along open edges; keep all edges between clusters sharp (--all-sharp)"
+    )]
+    NoStep {
+        /// How many.
+        strips: usize,
+    },
     /// Patches overlap within a face.
     #[error(
         "the blends of face {face} overlap near {at}, however short; use clusters with less reach there, or keep an edge sharp"

@@ -27,6 +27,7 @@
 //! | `hartmann.rs` | strips along open edges |
 //! | `layout.rs`, `blend.rs` | how far each blend reaches, and the whole |
 //! | `sample.rs`, `rings.rs`, `planar.rs`, `weave.rs` | one watertight mesh of it all |
+//! | `step.rs` | STEP files |
 //! | `solids.rs` | polyhedra for tests and fixtures |
 //! | `error.rs` | why there is no blend |
 
@@ -49,6 +50,7 @@ mod rings;
 mod sample;
 pub mod solids;
 mod spatch;
+mod step;
 mod symmetry;
 mod weave;
 
@@ -67,5 +69,6 @@ pub use plane::{Flat, Plane};
 pub use polyhedron::{Face, Halfedge, Params as PolyhedronParams, Polyhedron, Turn};
 pub use profile_nurbs::SurfaceJet;
 pub use spatch::SPatch;
+pub use step::{Step, to_step};
 pub use symmetry::symmetries;
 pub use weave::{Part, Place, Woven, weave};

@@ -79,7 +79,11 @@ impl Net {
             flats[shape.border(k)[0]] = Flat::point(tail + *reach * solid.vector(h).normalize_or_zero());
         }
         let bulge = params.bulge.clamp(0.0, 0.99);
-        let mut points = settle(&flats, &shape.neighbours(), &anchors, bulge / (1.0 - bulge));
+        let mut anchors: Vec<(DVec3, f64)> = anchors.into_iter().map(|a| (a, bulge / (1.0 - bulge))).collect();
+        for k in (0..m).filter(|&k| cluster.is_hollow(solid, k)) {
+            hold_hollow(solid, cluster, params, k, &mut anchors);
+        }
+        let mut points = settle(&flats, &shape.neighbours(), &anchors);
         for step in &params.moves {
             let missing = || Error::NoControlPoint { index: step.index.clone(), degree: shape.to_string() };
             let number = shape.number(&step.index).ok_or_else(missing)?;
@@ -95,6 +99,32 @@ impl Net {
             sides.map(|k| self.planes[k].height(p).abs()).fold(0.0, f64::max)
         };
         self.shape.indices().into_iter().zip(&self.points).map(off).fold(0.0, f64::max)
+    }
+}
+
+/// How stiffly the edges of a hollow side are held, beside the springs.
+const HOLD: f64 = 20.0;
+
+/// Places for the control points on the open edges beside a face that is reflex at the cluster, such as the notch of a
+/// star. There the blend must leave the face away from the cluster's vertex, not towards it, or it would fold over the
+/// face: so the face's own boundary comes close to the vertex, and the rows behind it stay far out on the edges.
+fn hold_hollow(solid: &Polyhedron, cluster: &Cluster, params: &Params, side: usize, anchors: &mut [(DVec3, f64)]) {
+    let (m, shape) = (cluster.sides(), params.shape);
+    for (k, ahead) in [(side, 0), ((side + 1) % m, 1)] {
+        let h = cluster.open[k];
+        let tail = solid.positions[solid.halfedges[h as usize].tail as usize];
+        let arm = params.reach[k] * solid.vector(h).normalize_or_zero();
+        let unit = 2.0 / (shape.side_degree(side).max(3) - 1) as f64;
+        for (index, anchor) in shape.indices().iter().zip(anchors.iter_mut()) {
+            let on_edge = shape.is_in_side(index, k, params.continuity)
+                && shape.is_in_side(index, (k + m - 1) % m, params.continuity);
+            if on_edge {
+                let steps = shape.steps_from(index, k);
+                let (along, others) = (steps[ahead], steps[1 - ahead] + steps[2]);
+                let share = 1.0 - unit * (1.05 * along as f64 + 0.3 * others as f64);
+                *anchor = (tail + share * arm, HOLD);
+            }
+        }
     }
 }
 

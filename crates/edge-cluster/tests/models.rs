@@ -39,6 +39,21 @@ fn check(name: &str, solid: &Polyhedron, blended: &Blend) {
         let slopes = contact_slopes(net, patch);
         assert!(slopes.iter().all(|s| *s > net.continuity as f64 + 0.95), "{name}: {slopes:?}");
     }
+    if let Ok(folder) = std::env::var("DUMP") {
+        let mut text = String::new();
+        for p in &blended.woven.mesh.positions {
+            text += &format!("v {:?} {:?} {:?}\n", p.x, p.y, p.z);
+        }
+        for f in &blended.woven.mesh.faces {
+            text += &format!("f {} {} {}\n", f[0].0 + 1, f[1].0 + 1, f[2].0 + 1);
+        }
+        std::fs::write(format!("{folder}/{}.obj", name.replace(' ', "_")), text).unwrap();
+        eprintln!(
+            "{name} {} shrink {:?}",
+            blended.woven.mesh.faces.len(),
+            blended.shrink.iter().copied().fold(1.0, f64::min)
+        );
+    }
 }
 
 #[test]

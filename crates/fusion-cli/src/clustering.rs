@@ -56,6 +56,9 @@ pub struct Cluster {
     /// Write the control nets and strips here, as JSON
     #[arg(long, value_name = "NETS.json")]
     pub nets: Option<PathBuf>,
+    /// Write the exact tensor-product patches and trimmed planes here, as STEP; needs --all-sharp
+    #[arg(long, value_name = "FILE.step", requires = "all_sharp")]
+    pub step: Option<PathBuf>,
 }
 
 fn continuity(text: &str) -> Result<usize, String> {

@@ -27,18 +27,23 @@ fn cases() -> Vec<(&'static str, solids::Solid, usize, Option<Degree>)> {
     ]
 }
 
-/// The polyhedra as models of polygons, with the clusters they are blended by, as a file names them.
-pub fn polyhedra() -> Vec<(&'static str, Model, String)> {
+/// The regular and semiregular solids and ten convex-concave ones, whose clusters are chosen.
+fn covered() -> impl Iterator<Item = (String, solids::Solid)> {
+    let regular = solids::regular().into_iter().map(|(name, solid)| (name.to_string(), solid));
+    regular.chain((0..10).map(|seed| (format!("convex-concave {seed}"), solids::convex_concave(seed))))
+}
+
+/// The polyhedra as models of polygons, with the clusters they are blended by, as a file names them, if they are not
+/// chosen.
+pub fn polyhedra() -> Vec<(String, Model, Option<String>)> {
     let file = |clusters: &[Vec<u32>]| {
-        clusters
-            .iter()
-            .fold("version = 1\n".to_string(), |text, c| text + &format!("\n[[cluster]]\nvertices = {c:?}\n"))
+        let entry = |c| format!("\n[[cluster]]\nvertices = {c:?}\n");
+        clusters.iter().fold("version = 1\n".to_string(), |text, c: &Vec<u32>| text + &entry(c))
     };
-    cases()
-        .into_iter()
-        .filter(|c| c.2 == 1)
-        .map(|(name, solid, ..)| (name, model(&solid), file(&solid.clusters)))
-        .collect()
+    let named = cases().into_iter().filter(|c| c.2 == 1);
+    let named = named.map(|(name, solid, ..)| (name.to_string(), model(&solid), Some(file(&solid.clusters))));
+    let chosen = covered().map(|(name, solid)| (format!("cluster-{}", name.replace(' ', "-")), model(&solid), None));
+    named.chain(chosen).collect()
 }
 
 fn model(solid: &solids::Solid) -> Model {
@@ -85,7 +90,12 @@ pub fn run(bless: bool, reference: &mut Option<Reference>) -> Result<usize, Faul
         made.push((name, rounded));
     }
     println!("regress: {} polyhedra, {faults} faults", made.len());
-    if reference.is_some() {
+    if let Some(reference) = reference {
+        for (name, solid) in covered() {
+            let params = Params { tolerance: 2e-3, ..Params::new(Format::Ply) };
+            let rounded = cluster(&model(&solid), &params, &Watch::default()).map_err(|e| format!("{name}: {e}"))?;
+            reference.add(&name, &rounded.outcome.model.mesh)?;
+        }
         faults += made.iter().map(|(name, m)| compare(name, m, SAMPLES / made.len())).sum::<Result<usize, Fault>>()?;
     }
     Ok(faults)

@@ -10,11 +10,12 @@ use std::fs;
 /// Blends the clusters of a polyhedron and writes the result.
 pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     let destination = Destination::check(&args.target, session)?;
-    if let Some(nets) = &args.nets {
-        if is_stream(nets) || *nets == args.target.output {
-            return Err(Failure::usage("--nets needs a file of its own"));
+    let sides = [args.nets.as_ref(), args.step.as_ref()];
+    for (i, file) in sides.iter().enumerate().filter_map(|(i, f)| Some((i, (*f)?))) {
+        if is_stream(file) || *file == args.target.output || sides[..i].contains(&Some(file)) {
+            return Err(Failure::usage("--nets and --step need files of their own"));
         }
-        check_writable(nets)?;
+        check_writable(file)?;
     }
     let clusters = args.clusters.as_deref().map(read_clusters).transpose()?;
     let model = session.read(&args.input, &args.source)?;
@@ -41,14 +42,22 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     };
     let mut made = cluster(&model, &params, session.watch())
         .map_err(|e| Failure::of(&e, format!("{}: {e}", args.input.display())))?;
+    let mut files: Vec<_> = args.nets.iter().map(|path| (path.clone(), made.nets_to_json().into_bytes())).collect();
     let report = &mut made.outcome.report;
     report.inputs = counts(std::slice::from_ref(&args.input), std::slice::from_ref(&model));
     for note in &report.notes {
         session.note(note);
     }
-    let nets = args.nets.iter().map(|path| (path.clone(), made.nets_to_json().into_bytes())).collect();
+    if let Some(path) = &args.step {
+        let (text, left_out) = made.to_step().map_err(|e| Failure::of(&e, e.to_string()))?;
+        files.push((path.clone(), text.into_bytes()));
+        if left_out > 0 {
+            let what = format!("{left_out} S-patches have no STEP entity and are left out of {}", path.display());
+            made.outcome.report.warnings.push(what);
+        }
+    }
     let outcome = &made.outcome;
-    session.write_with(&destination, &outcome.model, Some(&outcome.origins), nets, &outcome.report)
+    session.write_with(&destination, &outcome.model, Some(&outcome.origins), files, &outcome.report)
 }
 
 fn read_clusters(path: &std::path::Path) -> Result<Vec<Spec>, Failure> {

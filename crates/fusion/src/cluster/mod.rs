@@ -68,6 +68,17 @@ impl Clustered {
     }
 }
 
+impl Clustered {
+    /// The exact blend as a STEP file, and how many S-patches it leaves out; docs/cluster.md says what it holds.
+    ///
+    /// # Errors
+    /// [`Error::Cluster`] where strips run along open edges.
+    pub fn to_step(&self) -> Result<(String, usize), Error> {
+        let step = edge_cluster::to_step(&self.solid, &self.blend.layout)?;
+        Ok((step.text, step.left_out))
+    }
+}
+
 /// By what reaches are multiplied, one after the other, while the result meets itself in space.
 const SHORTER: [f64; 4] = [1.0, 0.8, 0.6, 0.4];
 
