@@ -21,6 +21,8 @@ pub struct Blend {
 /// How much reaches shorten at a time, and how often at most: down to a fiftieth.
 const SHORTER: f64 = 0.85;
 const ROUNDS: usize = 24;
+/// Least length of a strip, as a share of its edge.
+const GAP: f64 = 0.1;
 /// How much they shorten once more, when they fit.
 const MARGIN: f64 = 0.85;
 
@@ -47,26 +49,42 @@ pub fn blend(
     for round in 0..ROUNDS {
         watch.step("layout", round as f64 / ROUNDS as f64)?;
         let layout = Layout::new(solid, specs, params, &shrink)?;
-        let woven = weave(solid, &layout, tolerance, watch)?;
-        if woven.crowded.is_empty() {
-            if crowded.is_empty() || spaced {
-                return Ok(Blend { layout, woven, shrink });
-            }
-            // They fit now; leave some of the face between them.
-            shrink.iter_mut().filter(|s| **s < shorten).for_each(|s| *s *= MARGIN);
-            spaced = true;
-            continue;
-        }
-        crowded = woven.crowded;
         let mut shorter = vec![false; shrink.len()];
-        for &(face, _) in &crowded {
-            for h in solid.face_halfedges(face) {
-                shorter[h as usize] = true;
-                shorter[solid.halfedges[h as usize].twin as usize] = true;
+        let mut shorten_edge = |h: u32| {
+            shorter[h as usize] = true;
+            shorter[solid.halfedges[h as usize].twin as usize] = true;
+        };
+        let passing: Vec<u32> = passing(solid, &layout).collect();
+        if passing.is_empty() || round + 1 == ROUNDS {
+            let woven = weave(solid, &layout, tolerance, watch)?;
+            if woven.crowded.is_empty() {
+                if crowded.is_empty() || spaced {
+                    return Ok(Blend { layout, woven, shrink });
+                }
+                // They fit now; leave some of the face between them.
+                shrink.iter_mut().filter(|s| **s < shorten).for_each(|s| *s *= MARGIN);
+                spaced = true;
+                continue;
             }
+            crowded = woven.crowded;
+            crowded.iter().flat_map(|&(face, _)| solid.face_halfedges(face)).for_each(&mut shorten_edge);
         }
+        passing.into_iter().for_each(&mut shorten_edge);
         shrink.iter_mut().zip(shorter).filter(|s| s.1).for_each(|(s, _)| *s *= SHORTER);
     }
-    let (face, at) = crowded[0];
+    let (face, at) = crowded.first().copied().unwrap_or_default();
     Err(Error::Crowded { face: face as usize, at })
+}
+
+/// The edges whose strips would run backwards: where the two patches, as they are cut off, pass each other or almost.
+fn passing<'a>(solid: &'a Polyhedron, layout: &'a Layout) -> impl Iterator<Item = u32> + 'a {
+    layout.strips.iter().filter_map(move |strip| {
+        let h = layout.clusters[strip.ends[0].0].open[strip.ends[0].1];
+        let edge = solid.vector(h);
+        let gap = |s: f64| {
+            let [near, far] = [0.0, 1.0].map(|t| strip.point(&layout.patches, s, t));
+            (far - near).dot(edge) / edge.length_squared()
+        };
+        [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().any(|s| gap(s) < GAP).then_some(h)
+    })
 }

@@ -14,6 +14,11 @@ pub struct Polygon {
     apothem: f64,
 }
 
+/// Points evaluated side by side, so that the compiler can use vector registers.
+pub(crate) const LANES: usize = 8;
+/// One number for each of them.
+pub(crate) type Lanes = [f64; LANES];
+
 /// A value and its derivatives by x, y, xx, xy, yy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jet(pub [f64; 6]);
@@ -39,25 +44,45 @@ impl Polygon {
         self.corners[k % self.corners.len()]
     }
 
-    /// l_k at `p` for all k, into `out`. The signed areas σ_k are taken as distances from the sides, which all areas are
-    /// in the same proportion to. O(m²), exact zeros on the sides where a distance comes out as zero.
+    /// l_k for all k at `LANES` points side by side. The signed areas σ_k are taken as distances from the sides, which all
+    /// areas are in the same proportion to. O(m²). `sigma` and `out` hold m entries each.
     #[inline]
-    pub fn embed(&self, p: DVec2, out: &mut [f64]) {
+    pub(crate) fn embed_lanes(&self, x: &Lanes, y: &Lanes, sigma: &mut [Lanes], out: &mut [Lanes]) {
         let m = self.corners.len();
-        let sigma = |k: usize| self.apothem - self.normals[k].dot(p);
-        let mut sum = 0.0;
+        for (s, n) in sigma.iter_mut().zip(&self.normals) {
+            for lane in 0..LANES {
+                s[lane] = self.apothem - (n.x * x[lane] + n.y * y[lane]);
+            }
+        }
+        let mut sum = [0.0; LANES];
         for (k, l) in out.iter_mut().enumerate().take(m) {
             // Every side but the two that meet in corner k.
-            let mut product = 1.0;
-            for i in 0..m {
-                if i != k && i + 1 != k && (k != 0 || i + 1 != m) {
-                    product *= sigma(i);
+            let mut product = [1.0; LANES];
+            for i in k + 1..k + m - 1 {
+                let s = &sigma[if i < m { i } else { i - m }];
+                for lane in 0..LANES {
+                    product[lane] *= s[lane];
                 }
             }
+            for lane in 0..LANES {
+                sum[lane] += product[lane];
+            }
             *l = product;
-            sum += product;
         }
-        out.iter_mut().take(m).for_each(|l| *l /= sum);
+        let whole = sum.map(|s| 1.0 / s);
+        for l in out.iter_mut().take(m) {
+            for lane in 0..LANES {
+                l[lane] *= whole[lane];
+            }
+        }
+    }
+
+    /// l_k at `p` for all k.
+    pub fn embed(&self, p: DVec2) -> Vec<f64> {
+        let mut rows = vec![[0.0; LANES]; 2 * self.sides()];
+        let (sigma, out) = rows.split_at_mut(self.sides());
+        self.embed_lanes(&[p.x; LANES], &[p.y; LANES], sigma, out);
+        out.iter().map(|l| l[0]).collect()
     }
 
     /// l_k at `p` with first and second derivatives.
@@ -114,16 +139,14 @@ mod tests {
         for m in 3..=9 {
             let polygon = Polygon::new(m);
             for p in [DVec2::ZERO, DVec2::new(0.2, 0.1), DVec2::new(-0.3, 0.35), DVec2::new(0.05, -0.4)] {
-                let mut l = vec![0.0; m];
-                polygon.embed(p, &mut l);
-                assert!((l.iter().sum::<f64>() - 1.0).abs() < 1e-15 && l.iter().all(|&x| x > 0.0));
+                let l = polygon.embed(p);
+                assert!((l.iter().sum::<f64>() - 1.0).abs() < 1e-14 && l.iter().all(|&x| x > 0.0));
                 // Wachspress' coordinates reproduce the point.
                 let back: DVec2 = l.iter().enumerate().map(|(k, &w)| w * polygon.corner(k)).sum();
                 assert!(back.distance(p) < 1e-14, "{m}: {back} for {p}");
             }
             // Linear along a side.
-            let mut l = vec![0.0; m];
-            polygon.embed(polygon.corner(1).lerp(polygon.corner(2), 0.3), &mut l);
+            let l = polygon.embed(polygon.corner(1).lerp(polygon.corner(2), 0.3));
             assert!((l[1] - 0.7).abs() < 1e-14 && (l[2 % m] - 0.3).abs() < 1e-14);
         }
     }
@@ -131,11 +154,7 @@ mod tests {
     #[test]
     fn derivatives_agree_with_differences() {
         let (polygon, p, h) = (Polygon::new(6), DVec2::new(0.31, -0.22), 1e-4);
-        let value = |x: f64, y: f64| {
-            let mut l = vec![0.0; 6];
-            polygon.embed(p + DVec2::new(x, y), &mut l);
-            l
-        };
+        let value = |x: f64, y: f64| polygon.embed(p + DVec2::new(x, y));
         let [c, e, w, n, s] = [value(0.0, 0.0), value(h, 0.0), value(-h, 0.0), value(0.0, h), value(0.0, -h)];
         let [ne, nw, se, sw] = [value(h, h), value(-h, h), value(h, -h), value(-h, -h)];
         for (k, jet) in polygon.embed_jets(p).iter().enumerate() {

@@ -121,7 +121,9 @@ fn hold_hollow(solid: &Polyhedron, cluster: &Cluster, params: &Params, side: usi
             if on_edge {
                 let steps = shape.steps_from(index, k);
                 let (along, others) = (steps[ahead], steps[1 - ahead] + steps[2]);
-                let share = 1.0 - unit * (1.05 * along as f64 + 0.3 * others as f64);
+                // Along the face's boundary down to the vertex and a little beyond; behind it, not half as far.
+                let behind = (others as f64 / params.continuity as f64).min(1.0);
+                let share = 1.0 - unit * (0.3 * others as f64 + along as f64 * (1.05 - 0.65 * behind));
                 *anchor = (tail + share * arm, HOLD);
             }
         }

@@ -1,9 +1,10 @@
 //! S-patches: a Bézier simplex composed with the embedding of a polygon, evaluated by de Casteljau's algorithm.
 
 use crate::control::{Shape, compositions};
-use crate::embedding::Polygon;
+use crate::embedding::{LANES, Lanes, Polygon};
 use glam::{DVec2, DVec3};
 use profile_nurbs::SurfaceJet;
+use rayon::prelude::*;
 
 /// An m-sided S-patch of degree n ([LoopDeRose1989]).
 ///
@@ -18,9 +19,8 @@ pub struct SPatch {
     steps: Vec<Vec<u32>>,
 }
 
-/// Points evaluated side by side, so that the compiler can use vector registers.
-const LANES: usize = 8;
-type Lanes = [f64; LANES];
+/// Batches at least this long are worth a second thread.
+const BATCH: usize = 4096;
 
 impl SPatch {
     /// A patch with `points` numbered as [`Shape`] says; `None` if their number is not right.
@@ -62,22 +62,29 @@ impl SPatch {
         &self.points
     }
 
-    /// The surface at many points of the polygon, appended to `out`. Eight at a time; O(m · control points) each.
+    /// The surface at many points of the polygon, appended to `out`. Eight at a time, in parallel if there are many;
+    /// O(m · control points) each.
     pub fn points(&self, at: &[DVec2], out: &mut Vec<DVec3>) {
+        let from = out.len();
+        out.resize(from + at.len(), DVec3::ZERO);
+        let out = &mut out[from..];
+        if at.len() <= BATCH {
+            self.fill(at, out);
+        } else {
+            at.par_chunks(BATCH).zip(out.par_chunks_mut(BATCH)).for_each(|(at, out)| self.fill(at, out));
+        }
+    }
+
+    fn fill(&self, at: &[DVec2], out: &mut [DVec3]) {
         let m = self.polygon.sides();
-        let mut l = vec![[0.0; LANES]; m];
-        let mut one = vec![0.0; m];
+        let (mut sigma, mut l) = (vec![[0.0; LANES]; m], vec![[0.0; LANES]; m]);
         // Two levels in turn; the first step reads the control points themselves.
         let room = self.steps.first().map_or(1, |s| s.len() / m);
         let mut levels = [vec![[[0.0; LANES]; 3]; room], vec![[[0.0; LANES]; 3]; room]];
-        out.reserve(at.len());
-        for block in at.chunks(LANES) {
-            for lane in 0..LANES {
-                self.polygon.embed(block[lane.min(block.len() - 1)], &mut one);
-                for k in 0..m {
-                    l[k][lane] = one[k];
-                }
-            }
+        for (block, out) in at.chunks(LANES).zip(out.chunks_mut(LANES)) {
+            let place = |lane: usize| block[lane.min(block.len() - 1)];
+            let (x, y) = (std::array::from_fn(|i| place(i).x), std::array::from_fn(|i| place(i).y));
+            self.polygon.embed_lanes(&x, &y, &mut sigma, &mut l);
             for (level, step) in self.steps.iter().enumerate() {
                 let [a, b] = &mut levels;
                 let (from, to) = if level % 2 == 0 { (b, a) } else { (a, b) };
@@ -86,7 +93,9 @@ impl SPatch {
                 }
             }
             let last = &levels[(self.steps.len() + 1) % 2][0];
-            out.extend((0..block.len()).map(|lane| DVec3::new(last[0][lane], last[1][lane], last[2][lane])));
+            for (lane, p) in out.iter_mut().enumerate() {
+                *p = DVec3::new(last[0][lane], last[1][lane], last[2][lane]);
+            }
         }
     }
 
@@ -185,8 +194,7 @@ mod tests {
 
     /// Σ n!/Π i_k! Π l_k^{i_k} b_i, straight from the definition.
     fn definition(sides: usize, degree: usize, points: &[DVec3], p: DVec2) -> DVec3 {
-        let mut l = vec![0.0; sides];
-        Polygon::new(sides).embed(p, &mut l);
+        let l = Polygon::new(sides).embed(p);
         let factorial = |n: u8| (1..=n).map(f64::from).product::<f64>();
         let basis = |index: &[u8]| {
             index.iter().zip(&l).map(|(&i, l)| l.powi(i32::from(i)) / factorial(i)).product::<f64>()
