@@ -17,7 +17,8 @@ pub struct Rolling {
     /// What finds the way of the ball's centre
     #[arg(long, value_enum, default_value_t = Spine::Contact, requires = "radius")]
     pub spine: Spine,
-    /// How the surface is put in; this version has `stitch`: cut along the ball's contact curves and sew in the sweep
+    /// How the surface is put in: `stitch` cuts along the ball's contact curves and sews in the sweep; `keep` moves the
+    /// mesh's own vertices onto it, all faces kept
     #[arg(long, value_name = "SURFACE", default_value = "stitch", value_parser = surface, requires = "radius")]
     pub surface: Surface,
     /// Least reach of the two sides the ball rolls on, in radii; grows by itself where more is needed
@@ -31,7 +32,6 @@ pub struct Rolling {
 impl Rolling {
     /// The same for the library, for a ball of `radius` in model units.
     pub fn with_radius(&self, radius: f64) -> blend::Params {
-        let Surface::Stitch = self.surface;
         blend::Params {
             profile: self.profile.clone(),
             overlap: match self.overlap {
@@ -44,6 +44,10 @@ impl Rolling {
             },
             alpha: self.alpha,
             tolerance: self.tolerance,
+            surface: match self.surface {
+                Surface::Stitch => blend::Surface::Stitch,
+                Surface::Keep => blend::Surface::Keep(blend::keep::Params::default()),
+            },
             ..blend::Params::new(radius)
         }
     }
@@ -72,6 +76,8 @@ pub enum Spine {
 pub enum Surface {
     /// Swept, and sewn between exact cuts.
     Stitch,
+    /// The mesh's own vertices moved onto the sweep.
+    Keep,
 }
 
 fn profile(text: &str) -> Result<Profile, String> {
@@ -92,7 +98,8 @@ fn profile(text: &str) -> Result<Profile, String> {
 fn surface(text: &str) -> Result<Surface, String> {
     match text {
         "stitch" => Ok(Surface::Stitch),
-        _ => Err("stitch is what this version has".into()),
+        "keep" => Ok(Surface::Keep),
+        _ => Err("a surface is stitch or keep".into()),
     }
 }
 

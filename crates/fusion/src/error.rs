@@ -86,6 +86,7 @@ impl Error {
                 _ => None,
             },
             Self::Blend(blend::Error::DoesNotFit { at, .. }) => Some(*at),
+            Self::Blend(blend::Error::Keep(refusal)) => Some(refusal.place()),
             Self::Blend(blend::Error::Spine(error)) | Self::Seam(error) => error.place(),
             Self::Blend(blend::Error::Embed(error)) => match error {
                 EmbedError::Crossings(all) => all.first().map(|c| c.place),

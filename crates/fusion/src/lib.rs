@@ -26,6 +26,7 @@
 //! | `info.rs` | counts, measures and defects of one mesh |
 //! | `features.rs` | feature curves by dihedral angle |
 //! | `attributes.rs` | attributes carried from inputs to the result |
+//! | `profile_file.rs` | cross-sections read from files |
 //! | `palette.rs` | which colour shows what a face comes from |
 //! | `report.rs`, `origins_json.rs` | the account of a job, as files |
 
@@ -44,6 +45,7 @@ mod palette;
 pub mod recipe;
 mod region;
 pub mod remeshing;
+mod profile_file;
 mod repair;
 mod report;
 pub mod round;
@@ -58,6 +60,7 @@ pub use mesh_core;
 pub use origins_json::origins_to_json;
 pub use outcome::Outcome;
 pub use palette::palette_index;
+pub use profile_file::{ProfileFileError, profile_from_text};
 pub use profile_nurbs::Profile;
 pub use recipe::Recipe;
 pub use region::Region;

@@ -3,7 +3,7 @@
 use crate::distortion::{doubled_area, is_flipped};
 use crate::rectangle::RingMap;
 use glam::{DVec2, DVec3};
-use mesh_core::{Adjacency, VertexId, area_vector};
+use mesh_core::{Adjacency, VertexId};
 
 /// How long [`relax`] smooths.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,14 +20,14 @@ impl Default for RelaxParams {
     }
 }
 
-/// Weighted Laplacian smoothing of a ring's map, boundary fixed: every vertex moves towards the mean of the middles of
-/// its triangles, each weighed by its area on the `target` surface.
+/// Weighted Laplacian smoothing of a ring's map, boundary fixed: every vertex moves towards the mean of the far edges'
+/// middles of its triangles, each weighed by the triangle's two sides at the vertex, as long as they are on the `target`.
 ///
-/// That is the mean of its neighbours weighed by the areas beside each edge. Areas are those of the surface the map is
-/// going to be laid on, since the triangles there are to become good, not those in the plane; they draw vertices to
-/// where triangles are large, which evens out a map whose scale varies, where equal weights would leave it as it is
-/// and cotangents would pull it back. No triangle is turned over by a move, and turned ones are mended where a move can.
-/// In vertex order, so the same bits for any thread count. O(n) a round.
+/// That is a mean of its neighbours, those weighing more that are farther away on the surface the map is going to be
+/// laid on, since it is there that edges are to become even. Equal weights know nothing of that surface; cotangents
+/// would pull back to the conformal map; areas let a vertex slide close to the far end of a long triangle. No triangle is turned
+/// over by a move, and turned ones are mended where a move can. In vertex order, so the same bits for any thread
+/// count. O(n) a round.
 pub fn relax<M: Adjacency>(mesh: &M, map: &mut RingMap, target: impl Fn(DVec2) -> DVec3, params: &RelaxParams) {
     let inner: Vec<VertexId> =
         mesh.vertex_ids().filter(|&v| mesh.outgoing(v).is_some_and(|h| mesh.twin(h).is_some())).collect();
@@ -70,9 +70,9 @@ impl Star {
     fn mean(&self, lifted: DVec3) -> Option<DVec2> {
         let (mut sum, mut total) = (DVec2::ZERO, 0.0);
         for (&[b, c], &[q, r]) in self.plane.iter().zip(&self.space) {
-            let area = area_vector([lifted, q, r]).length();
-            sum += area * 0.5 * (b + c);
-            total += area;
+            let sides = lifted.distance(q) + lifted.distance(r);
+            sum += sides * 0.5 * (b + c);
+            total += sides;
         }
         (total > 0.0 && sum.is_finite()).then(|| sum / total)
     }

@@ -6,8 +6,10 @@
 //! | `linkage.rs` | linkage curves on the surface, cut into the mesh |
 //! | `strip.rs` | the swept surface as triangles |
 //! | `sew.rs` | removal of what lies between, sewing |
+//! | `keep/` | the other surface: vertices slid onto the sweep, connectivity kept |
 //! | `trouble.rs` | what a stage refuses, and where |
 
+pub mod keep;
 mod linkage;
 mod sew;
 mod strip;
@@ -30,6 +32,9 @@ pub struct Params {
     pub radius: f64,
     /// Cross-section of the blend.
     pub profile: Profile,
+    /// Distance of the apex from the ball's centre in radii, if it is moved out along its line; see
+    /// [`profile_nurbs::Section::with_reach`]. The blend then meets the surfaces at an angle.
+    pub reach: Option<f64>,
     /// What to do where the ball does not fit.
     pub overlap: Overlap,
     /// What finds the way of the ball's centre.
@@ -42,6 +47,18 @@ pub struct Params {
     /// this much turns the linkage edges next to it, and with them the normals there: at the default, a five-thousandth,
     /// by less than a picture shows. More makes a mesh that survives 32-bit coordinates.
     pub snap: f64,
+    /// How the surface is put in.
+    pub surface: Surface,
+}
+
+/// How the surface is put in.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Surface {
+    /// Swept, and sewn between exact cuts along the linkages.
+    #[default]
+    Stitch,
+    /// The mesh's own vertices are moved onto it; connectivity is kept.
+    Keep(keep::Params),
 }
 
 /// What to do where a ball of the full radius does not fit, or its sweep would fold.
@@ -60,11 +77,13 @@ impl Params {
         Self {
             radius,
             profile: Profile::Arc,
+            reach: None,
             overlap: Overlap::default(),
             solver: Solver::Contact,
             alpha: 1.75,
             tolerance: 0.005,
             snap: 2e-4,
+            surface: Surface::default(),
         }
     }
 }
@@ -112,6 +131,9 @@ pub enum Error {
     /// The ball could not be rolled for a reason that no smaller radius mends.
     #[error(transparent)]
     Spine(#[from] spine::Error),
+    /// Vertices cannot be slid onto the surface.
+    #[error(transparent)]
+    Keep(#[from] keep::Refusal),
     /// The linkages could not be cut into the mesh.
     #[error(transparent)]
     Embed(#[from] tri_intersect::EmbedError),
@@ -133,6 +155,9 @@ pub fn blend(
     params: &Params,
     watch: &Watch,
 ) -> Result<Blended, Error> {
+    if let Surface::Keep(how) = &params.surface {
+        return keep::blend(mesh, curves, params, how, watch);
+    }
     let refusal = match attempt(mesh, curves, params, ROUNDS, watch) {
         Ok(blended) => return Ok(blended),
         Err(refusal) => refusal,

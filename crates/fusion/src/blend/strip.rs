@@ -96,7 +96,7 @@ fn profile_points(profile: &Profile, ball: &Sample, feet: [DVec3; 2], fineness: 
 /// centre differ a little, that is centre + α·e1 + β·e2 with α = d̄/(1+c) + Δ/(1−c), β = d̄/(1+c) − Δ/(1−c). In shallow
 /// wedges the difference Δ would throw it beyond the feet; there it is held back, at the cost of a small kink at the
 /// linkage.
-fn section(center: DVec3, [p1, p2]: [DVec3; 2]) -> Section {
+pub(crate) fn section(center: DVec3, [p1, p2]: [DVec3; 2]) -> Section {
     let (r1, r2) = (p1 - center, p2 - center);
     let (d1, d2) = (r1.length(), r2.length());
     let (e1, e2) = (r1 / d1, r2 / d2);

@@ -1,0 +1,177 @@
+//! Blends that keep the mesh's connectivity, as published ([Liu2005]): the vertices between the linkages slide onto the
+//! swept surface.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mod.rs` | the stages |
+//! | `target.rs` | the virtual surface S(t, u) through the profiles |
+//! | `region.rs` | the ring of triangles around the curve that the blend takes |
+//! | `border.rs` | where the ring's two borders go on the linkages |
+//! | `domain.rs` | the ring laid onto the surface's rectangle and smoothed there |
+//! | `refusal.rs` | what cannot be served, and why |
+
+mod border;
+mod domain;
+mod refusal;
+mod region;
+mod target;
+
+pub use refusal::Refusal;
+
+use super::{Blended, Error, Params as BlendParams, sew};
+use domain::settle;
+use glam::DVec3;
+use mesh_core::{
+    Adjacency, Connected, FaceId, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, VertexOrigin,
+    Watch, triangle_normal,
+};
+use param_conformal::{RelaxParams, Seam};
+use rayon::prelude::*;
+use region::Region;
+use spine::{BlendCurve, Rail, roll};
+use target::Target;
+
+/// How the vertices of a region find their places on the surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Whether the ring is mapped as a cylinder, or its seam is pinned to the rectangle's sides as in the paper. The
+    /// first has no seam to see, and less distortion.
+    pub seam: Seam,
+    /// Smoothing of the parameter domain, by which triangles become even on the surface.
+    pub relaxation: RelaxParams,
+    /// Samples along a spine before refinement.
+    pub samples: u32,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        // n = 40: [Liu2005] §4.1.
+        Self { seam: Seam::Periodic, relaxation: RelaxParams::default(), samples: 40 }
+    }
+}
+
+/// Blends closed `curves` of `mesh` by moving vertices alone: ids, faces and neighbourhoods stay, and so do the positions
+/// of all vertices outside the regions. Cost grows with the regions but for one pass over the mesh.
+///
+/// # Errors
+/// [`Error::Keep`] names what cannot be served, where and why; [`Error::Spine`] where the ball cannot be rolled.
+pub fn blend(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &BlendParams,
+    how: &Params,
+    watch: &Watch,
+) -> Result<Blended, Error> {
+    let rails = roll_all(mesh, curves, params, how)?;
+    watch.step("blend", 0.3)?;
+    let mut regions = Vec::with_capacity(curves.len());
+    let mut places = region::Places::new(mesh);
+    for (curve, rail) in curves.iter().zip(&rails) {
+        let target = Target::new(rail, &params.profile, params.reach)?;
+        let region = Region::around(mesh, curve, rail, &target, &mut places)?;
+        regions.push((region, target));
+    }
+    apart(mesh, &regions)?;
+    watch.step("blend", 0.5)?;
+    let settled: Vec<_> = regions.par_iter().map(|(region, target)| settle(region, target, how)).collect();
+    let mut positions = mesh.mesh().positions.clone();
+    for ((region, _), settled) in regions.iter().zip(settled) {
+        for (&v, p) in region.vertices.iter().zip(settled?) {
+            positions[v.index()] = p;
+        }
+    }
+    watch.step("blend", 0.8)?;
+    let moved = TriMesh { positions, faces: mesh.mesh().faces.clone() };
+    let origins = account(mesh, &regions);
+    check(mesh, &moved, &regions, &origins, watch)?;
+    let residual = rails.iter().map(|r| r.residual).fold(0.0, f64::max) / params.radius;
+    Ok(Blended {
+        first_blend_face: FaceId::from(moved.faces.len()),
+        mesh: moved,
+        origins,
+        strips: rails.len(),
+        residual,
+        shrunk: Vec::new(),
+        full_share: 1.0,
+    })
+}
+
+/// Steps along the spine: the curve's length over the number of samples, but half a radius at most. Jumps of the feet
+/// are refined by [`roll`] itself.
+fn roll_all(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &BlendParams,
+    how: &Params,
+) -> Result<Vec<Rail>, Error> {
+    let rolled = curves.par_iter().map(|curve| {
+        let step = (curve.length(mesh) / f64::from(how.samples.max(8))).min(0.5 * params.radius);
+        let rolling =
+            spine::Params { alpha: params.alpha, solver: params.solver, step, ..spine::Params::new(params.radius) };
+        roll(mesh, curve, curves, &rolling)
+    });
+    rolled.collect::<Result<_, _>>().map_err(Error::from)
+}
+
+/// No vertex may belong to two regions.
+fn apart(mesh: &Connected<TriMesh>, regions: &[(Region, Target)]) -> Result<(), Refusal> {
+    let mut all: Vec<VertexId> = regions.iter().flat_map(|r| r.0.vertices.iter().copied()).collect();
+    all.sort_unstable();
+    match all.windows(2).find(|w| w[0] == w[1]) {
+        Some(w) => Err(Refusal::Overlap { at: mesh.position(w[0]) }),
+        None => Ok(()),
+    }
+}
+
+/// Moved vertices and the faces of the regions are new; faces beside them are pieces of what they were.
+fn account(mesh: &Connected<TriMesh>, regions: &[(Region, Target)]) -> Origins {
+    let mut origins = Origins::identity(0, mesh.vertex_count(), mesh.face_count());
+    for (region, _) in regions {
+        for &v in &region.vertices {
+            origins.vertices[v] = VertexOrigin::New { stage: sew::STAGE };
+            for h in mesh.ring(v) {
+                origins.faces[h.face()] = FaceOrigin::Piece { part: 0, face: h.face() };
+            }
+        }
+    }
+    for &f in regions.iter().flat_map(|r| &r.0.faces) {
+        origins.faces[f] = FaceOrigin::New { stage: sew::STAGE };
+    }
+    origins
+}
+
+/// Faces beside a region keep their direction within this: their borders slide along the surface they lie on.
+const LEAST_COSINE: f64 = 0.5;
+
+/// Triangles beside the regions must stay on their surface, those within must follow it, and none may meet another.
+fn check(
+    mesh: &Connected<TriMesh>,
+    moved: &TriMesh,
+    regions: &[(Region, Target)],
+    origins: &Origins,
+    watch: &Watch,
+) -> Result<(), Error> {
+    let middle = |f: FaceId| moved.triangle(f).iter().sum::<DVec3>() / 3.0;
+    let mut changed = Vec::new();
+    for (region, _) in regions {
+        let beside = region.vertices.iter().flat_map(|&v| mesh.ring(v)).map(HalfedgeId::face);
+        let mut beside: Vec<FaceId> =
+            beside.filter(|&f| matches!(origins.faces[f], FaceOrigin::Piece { .. })).collect();
+        beside.sort_unstable();
+        beside.dedup();
+        for &f in &beside {
+            let (before, after) = (triangle_normal(mesh.mesh().triangle(f)), triangle_normal(moved.triangle(f)));
+            if before.dot(after) < LEAST_COSINE {
+                return Err(Refusal::Sheared { face: f, at: middle(f) }.into());
+            }
+        }
+        changed.extend(beside);
+        changed.extend_from_slice(&region.faces);
+    }
+    let hits = tri_intersect::self_intersections_among(moved, &changed, watch)
+        .map_err(|_| Refusal::Meets { pairs: 0, at: middle(changed[0]) })?;
+    match hits.first() {
+        None => Ok(()),
+        Some(pair) => Err(Refusal::Meets { pairs: hits.len(), at: middle(pair[0]) }.into()),
+    }
+}
