@@ -2,31 +2,64 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use fusion::blend::{Params, Surface, blend, keep};
-use mesh_core::{Connected, Faces, TriMesh, Watch, shapes};
+use fusion::{Profile, profile_from_text};
+use glam::DVec3;
+use mesh_core::{Connected, Faces, HalfedgeId, Positions, TriMesh, VertexId, Watch, shapes, shortest_path};
+use remesh::{Frozen, Projection, Sizing, remesh};
 use spine::BlendCurve;
 use std::hint::black_box;
 use tri_intersect::{Operation, boolean};
 
-/// Body and spout joined, patches in `n` × `n` cells, and their seams.
-fn teapot(n: u32) -> (Connected<TriMesh>, Vec<BlendCurve>) {
-    let pot = shapes::closed_teapot(n);
+type Mesh = Connected<TriMesh>;
+
+/// Body and spout joined and remeshed, with edges of length `near` around the seam and `far` away from it.
+fn teapot(near: f64, far: f64) -> (Mesh, BlendCurve) {
+    let pot = shapes::closed_teapot(40);
     let [body, spout] = [pot.body, pot.spout].map(|m| Connected::new(m).expect("a closed part is a manifold"));
     let joined = boolean(&body, &spout, Operation::Union, &tri_intersect::Params::default(), &Watch::default())
         .expect("body and spout overlap");
+    let seam: Vec<DVec3> = joined.seams[0].vertices.iter().map(|v| joined.mesh.positions[v.index()]).collect();
+    let away = |p: DVec3| seam.iter().map(|s| s.distance(p)).fold(f64::INFINITY, f64::min);
     let mesh = Connected::new(joined.mesh).expect("a boolean is a manifold");
-    let curves = joined.seams.iter().map(|s| BlendCurve::from_vertices(&mesh, &s.vertices));
-    let curves = curves.collect::<Result<_, _>>().expect("seams run along edges");
-    (mesh, curves)
+    let size = |p: DVec3| near + (far - near) * (2.0 * away(p) - 1.0).clamp(0.0, 1.0);
+    let wanted = remesh::Params { feature_angle: 25.0, shortest_feature: 8.0, ..remesh::Params::new(near) };
+    let even =
+        remesh(&mesh, &Frozen::default(), Sizing::Field(&size), &wanted, Projection::Input, &Watch::default());
+    let mesh = Connected::new(even.expect("a remeshed teapot").mesh).expect("a manifold");
+    // The seam is a feature and still among the edges: three points of it, and the paths that hug it.
+    let nearest = |p: DVec3| {
+        let gap = |v: &VertexId| mesh.position(*v).distance_squared(p);
+        mesh.vertex_ids().min_by(|a, b| gap(a).total_cmp(&gap(b))).expect("a mesh has vertices")
+    };
+    let picks = [0, 1, 2].map(|k| nearest(seam[k * seam.len() / 3]));
+    let cost = |h: HalfedgeId| {
+        let (a, b) = (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
+        a.distance(b) * (1e-3 + away(a) + away(a.midpoint(b)))
+    };
+    let paths = (0..3).map(|k| shortest_path(&mesh, picks[k], picks[(k + 1) % 3], cost).expect("a path"));
+    let curve = BlendCurve { halfedges: paths.collect::<Vec<_>>().concat() };
+    (mesh, curve)
 }
 
 fn stages(c: &mut Criterion) {
     let mut group = c.benchmark_group("keep");
-    for (n, radius) in [(15, 0.15), (7, 0.25)] {
-        let (mesh, curves) = teapot(n);
-        let params = Params { surface: Surface::Keep(keep::Params::default()), ..Params::new(radius) };
-        group.bench_function(BenchmarkId::new("teapot", mesh.face_count()), |b| {
-            b.iter(|| blend(black_box(&mesh), &curves, &params, &Watch::default()).expect("a blend"));
-        });
+    let custom = |text| profile_from_text(text).expect("a profile");
+    let profiles = [
+        ("arc", Profile::Arc, None),
+        ("conic, reach 2.4", Profile::Conic(2.0), Some(2.4)),
+        ("general", custom(include_str!("../../../docs/profiles/general.toml")), None),
+        ("ornate", custom(include_str!("../../../docs/profiles/ornate.json")), None),
+    ];
+    for (near, far) in [(0.111, 0.111), (0.18, 0.275)] {
+        let (mesh, curve) = teapot(near, far);
+        for (name, profile, reach) in profiles.clone() {
+            let surface = Surface::Keep(keep::Params::default());
+            let params = Params { surface, profile, reach, ..Params::new(0.35) };
+            let name = format!("teapot, {name}");
+            group.bench_function(BenchmarkId::new(name, mesh.face_count()), |b| {
+                b.iter(|| blend(black_box(&mesh), std::slice::from_ref(&curve), &params, &Watch::default()));
+            });
+        }
     }
     group.finish();
 }

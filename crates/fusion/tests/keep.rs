@@ -60,7 +60,9 @@ fn moved_vertices_lie_on_the_torus() {
     let ring = ((1.0 + RADIUS) * (1.0 + RADIUS) - HALF * HALF).sqrt();
     let error = |n: u32| {
         let (mesh, curves) = balls(n);
-        let done = run(&mesh, &curves, &Params::new(RADIUS)).unwrap();
+        // The surface itself is ruled between profiles: it must not be what is measured.
+        let params = Params { tolerance: 1e-4, ..Params::new(RADIUS) };
+        let done = run(&mesh, &curves, &params).unwrap();
         assert_eq!(done.mesh.faces, mesh.mesh().faces);
         assert!(done.residual <= 1e-9);
         let moved: Vec<_> = mesh.vertex_ids().filter(|&v| is_new(&done.origins, v)).collect();

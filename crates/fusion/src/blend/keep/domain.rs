@@ -6,11 +6,11 @@ use super::refusal::Refusal;
 use super::region::Region;
 use super::target::Target;
 use glam::{DVec2, DVec3};
-use mesh_core::{Adjacency, Faces, HalfedgeId, TriMesh};
+use mesh_core::{Adjacency, Connected, Faces, HalfedgeId, TriMesh};
 use param_conformal::{Error as MapError, Outline, RingMap, Weights, map_ring_with, relax};
 
-/// How far an edge may stand off the surface, in radii: an arc's edge that turns by 75 degrees.
-const MOST_SAGITTA: f64 = 0.2;
+/// How far an edge may stand off the surface, in radii: an arc's edge that turns by 63 degrees.
+const MOST_SAGITTA: f64 = 0.15;
 
 /// The new position of each vertex of the region.
 pub(super) fn settle(region: &Region, target: &Target, params: &Params) -> Result<Vec<DVec3>, Refusal> {
@@ -44,19 +44,32 @@ fn flatten(
     }
 }
 
-/// Refuses where an edge stands off the surface by too much.
+/// Refuses where an edge stands off the ball by too much. What counts is the part of the profile that it spans, and the
+/// bend of the sweep along it, so that a mesh fit for the arc is fit for any profile, sharp ones included.
 fn check_fineness(region: &Region, target: &Target, map: &RingMap, points: &[DVec3]) -> Result<(), Refusal> {
-    let local: &mesh_core::Connected<TriMesh> = &region.local;
+    let local: &Connected<TriMesh> = &region.local;
+    let most = MOST_SAGITTA * target.radius;
     for h in (0..3 * local.face_count()).map(HalfedgeId::from) {
         if local.twin(h).is_some_and(|t| t < h) {
             continue;
         }
         let [p, q]: [DVec2; 2] = [h, h.next()].map(|c| map.corner(local, c));
-        let [a, b] = [local.tail(h), local.head(h)].map(|v| points[v.index()]);
-        let sagitta = target.point(p.midpoint(q)).distance(a.midpoint(b));
-        if sagitta > MOST_SAGITTA * target.radius {
+        let across = target.radius * (1.0 - (0.5 * target.turn(p.x) * (p.y - q.y).abs() / target.across).cos());
+        let along = target.bend * (p.x - q.x) * (p.x - q.x) / 8.0;
+        // The greatest bend of all is an upper bound; where it is passed the edge's own decides.
+        let along = if along > most { chord_height(target, p, q) } else { 0.0 };
+        let sagitta = across.max(along);
+        if sagitta > most {
+            let [a, b] = [local.tail(h), local.head(h)].map(|v| points[v.index()]);
             return Err(Refusal::TooCoarse { at: a.midpoint(b), edge: a.distance(b), radius: target.radius, sagitta });
         }
     }
     Ok(())
+}
+
+/// How far the surface bends away from the chord between two stations, half way across both.
+fn chord_height(target: &Target, p: DVec2, q: DVec2) -> f64 {
+    let y = 0.5 * (p.y + q.y);
+    let at = |x: f64| target.point(DVec2::new(x, y));
+    at(0.5 * (p.x + q.x)).distance(at(p.x).midpoint(at(q.x)))
 }

@@ -96,8 +96,9 @@ pub fn blend(
     })
 }
 
-/// Steps along the spine: the curve's length over the number of samples, but half a radius at most. Jumps of the feet
-/// are refined by [`roll`] itself.
+/// Rolls along every curve with steps of the curve's length over the number of samples, half a radius at most; once
+/// more with shorter ones where a spine's chords then stand off by more than the tolerance. Where a foot outruns the
+/// centre, [`roll`] itself puts more samples in.
 fn roll_all(
     mesh: &Connected<TriMesh>,
     curves: &[BlendCurve],
@@ -105,12 +106,33 @@ fn roll_all(
     how: &Params,
 ) -> Result<Vec<Rail>, Error> {
     let rolled = curves.par_iter().map(|curve| {
+        let with_step = |step: f64| {
+            let rolling = spine::Params {
+                alpha: params.alpha,
+                solver: params.solver,
+                step,
+                ..spine::Params::new(params.radius)
+            };
+            roll(mesh, curve, curves, &rolling)
+        };
         let step = (curve.length(mesh) / f64::from(how.samples.max(8))).min(0.5 * params.radius);
-        let rolling =
-            spine::Params { alpha: params.alpha, solver: params.solver, step, ..spine::Params::new(params.radius) };
-        roll(mesh, curve, curves, &rolling)
+        let rail = with_step(step)?;
+        // Heights fall as the square of the step.
+        let refined = (chord_height(&rail) / (params.tolerance * params.radius)).sqrt();
+        if refined > 1.0 { with_step(step / refined.min(FINEST)) } else { Ok(rail) }
     });
     rolled.collect::<Result<_, _>>().map_err(Error::from)
+}
+
+/// Most samples for one of the first round.
+const FINEST: f64 = 8.0;
+
+/// How far the spine's chords stand off it: a quarter of what every second sample stands off the chord around it.
+fn chord_height(rail: &Rail) -> f64 {
+    let n = rail.samples.len();
+    let center = |i: usize| rail.samples[i % n].center;
+    let height = |i: usize| center(i + 1).distance(center(i).midpoint(center(i + 2)));
+    (0..n).map(height).fold(0.0, f64::max) / 4.0
 }
 
 /// No vertex may belong to two regions.

@@ -22,6 +22,10 @@ pub(super) struct Target {
     even: Vec<f64>,
     /// Mean length of the profiles, in model units.
     pub across: f64,
+    /// The angle through which each profile turns, in radians, and the first again.
+    turns: Vec<f64>,
+    /// The greatest curvature of a linkage, in 1/model unit.
+    pub bend: f64,
     /// The ball's, where the rail begins.
     pub radius: f64,
 }
@@ -46,6 +50,8 @@ impl Target {
         let sections: Vec<_> = samples.iter().map(|s| section(s.center, s.feet.map(|f| f.point))).collect();
         let closed = |i: usize| &sections[i % n];
         let feet = [0, 1].map(|side: usize| (0..=n).map(|i| [closed(i).p1, closed(i).p2][side]).collect());
+        let turns = (0..=n).map(|i| closed(i).angle()).collect();
+        let bend = feet.iter().map(|f: &Vec<DVec3>| greatest_curvature(f)).fold(0.0, f64::max);
         let outward = [0, 1].map(|side: usize| {
             let out = |i| ([closed(i).p1, closed(i).p2][side] - closed(i).p0).normalize_or_zero();
             (0..=n).map(out).collect()
@@ -59,12 +65,18 @@ impl Target {
         let sweep = Sweep::new(stations.clone(), curves)
             .map_err(|source| Refusal::Profile { at: samples[0].center, source })?;
         let across = lengths.iter().sum::<f64>() / n as f64;
-        Ok(Self { sweep, stations, feet, outward, longest, even, across, radius: samples[0].radius })
+        Ok(Self { sweep, stations, feet, outward, longest, even, across, turns, bend, radius: samples[0].radius })
     }
 
     /// Length all round, in t.
     pub fn period(&self) -> f64 {
         self.stations[self.stations.len() - 1]
+    }
+
+    /// The angle through which the profile before t turns, in radians.
+    pub fn turn(&self, t: f64) -> f64 {
+        let t = t.rem_euclid(self.period());
+        self.turns[self.stations.partition_point(|&s| s <= t).clamp(1, self.turns.len()) - 1]
     }
 
     /// The point of the surface at `p`: x is t, in any turn, and y runs from 0 on the right linkage to [`Target::across`]
@@ -76,6 +88,18 @@ impl Target {
         let u = self.even[i] + (at - i as f64) * (self.even[i + 1] - self.even[i]);
         self.sweep.point(p.x.rem_euclid(self.period()), u)
     }
+}
+
+/// Of a closed chain whose first point is repeated at the end.
+fn greatest_curvature(chain: &[DVec3]) -> f64 {
+    let n = chain.len() - 1;
+    let at = |i: usize| {
+        let [a, b, c] = [chain[(i + n - 1) % n], chain[i], chain[i + 1]];
+        let (before, after) = (b - a, c - b);
+        let turn = before.angle_between(after) * 2.0 / (before.length() + after.length());
+        if turn.is_finite() { turn } else { 0.0 }
+    };
+    (0..n).map(at).fold(0.0, f64::max)
 }
 
 /// Lengths from the start of a curve to `STEPS` even steps of its parameter, and the whole.
