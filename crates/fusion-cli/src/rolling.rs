@@ -1,16 +1,19 @@
 //! How a ball is rolled, as typed: the options that `blend` and the booleans share.
 
+use crate::failure::Failure;
 use clap::{Args, ValueEnum};
-use fusion::{Profile, Solver, blend};
+use fusion::{Profile, Solver, blend, profile_from_text};
+use std::path::{Path, PathBuf};
 
 /// Options of every verb that blends.
 #[derive(Args)]
 #[command(next_help_heading = "Blend options")]
 pub struct Rolling {
-    /// Cross-section of the blend: arc, g2 (curvature-continuous), chamfer, sharp, or conic=W, whose apex weighs W times
-    /// that of the arc (below 1 flatter, above 1 sharper)
-    #[arg(long, value_name = "PROFILE", default_value = "arc", value_parser = profile, requires = "radius")]
-    pub profile: Profile,
+    /// Cross-section of the blend: arc, g2 (curvature-continuous), chamfer, sharp, hermite, conic=W, whose apex weighs W
+    /// times that of the arc (below 1 flatter, above 1 sharper), or a FILE with a NURBS curve (docs/keep.md). With
+    /// `,reach=R` behind it the apex is moved out to R radii from the ball's centre
+    #[arg(long, value_name = "PROFILE", default_value = "arc", value_parser = section, requires = "radius")]
+    pub profile: Section,
     /// What to do where a full-size ball does not fit
     #[arg(long, value_enum, default_value_t = Overlap::Shrink, requires = "radius")]
     pub overlap: Overlap,
@@ -31,9 +34,10 @@ pub struct Rolling {
 
 impl Rolling {
     /// The same for the library, for a ball of `radius` in model units.
-    pub fn with_radius(&self, radius: f64) -> blend::Params {
-        blend::Params {
-            profile: self.profile.clone(),
+    pub fn with_radius(&self, radius: f64) -> Result<blend::Params, Failure> {
+        Ok(blend::Params {
+            profile: self.profile.curve.profile()?,
+            reach: self.profile.reach,
             overlap: match self.overlap {
                 Overlap::Shrink => blend::Overlap::Shrink,
                 Overlap::Error => blend::Overlap::Error,
@@ -49,6 +53,33 @@ impl Rolling {
                 Surface::Keep => blend::Surface::Keep(blend::keep::Params::default()),
             },
             ..blend::Params::new(radius)
+        })
+    }
+}
+
+/// The cross-section as typed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    curve: Curve,
+    /// Distance of the apex from the ball's centre, in radii.
+    reach: Option<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Curve {
+    Known(Profile),
+    File(PathBuf),
+}
+
+impl Curve {
+    fn profile(&self) -> Result<Profile, Failure> {
+        match self {
+            Self::Known(profile) => Ok(profile.clone()),
+            Self::File(path) => {
+                let fault = |e: &dyn std::fmt::Display| Failure::unreadable(format!("{}: {e}", path.display()));
+                let text = std::fs::read_to_string(path).map_err(|e| fault(&e))?;
+                profile_from_text(&text).map_err(|e| fault(&e))
+            }
         }
     }
 }
@@ -80,19 +111,34 @@ pub enum Surface {
     Keep,
 }
 
-fn profile(text: &str) -> Result<Profile, String> {
+fn section(text: &str) -> Result<Section, String> {
+    let (curve, reach) = match text.split_once(",reach=") {
+        None => (text, None),
+        Some((curve, reach)) => {
+            let reach =
+                within(reach, 0.1, 100.0).ok_or("the reach of a profile is a number of radii from 0.1 to 100")?;
+            (curve, Some(reach))
+        }
+    };
+    Ok(Section { curve: profile(curve)?, reach })
+}
+
+fn profile(text: &str) -> Result<Curve, String> {
     let conic = |w: &str| w.parse().ok().filter(|w: &f64| w.is_finite() && *w >= 0.0).map(Profile::Conic);
-    match text {
+    let known = match text {
         "arc" => Some(Profile::Arc),
         "g2" => Some(Profile::G2),
         "chamfer" => Some(Profile::Chamfer),
         "sharp" => Some(Profile::Sharp),
+        "hermite" => Some(Profile::Hermite),
         _ => text.strip_prefix("conic=").and_then(conic),
+    };
+    let is_file = Path::new(text).extension().is_some() && !text.starts_with("conic=");
+    match known {
+        Some(profile) => Ok(Curve::Known(profile)),
+        None if is_file => Ok(Curve::File(text.into())),
+        None => Err("a profile is arc, g2, chamfer, sharp, hermite, conic=W with W ≥ 0, such as conic=2, or a file with an extension, such as curve.json".into()),
     }
-    .ok_or_else(|| {
-        "a profile is arc, g2, chamfer, sharp, or conic=W with W ≥ 0, such as conic=2; this version reads none from files"
-            .into()
-    })
 }
 
 fn surface(text: &str) -> Result<Surface, String> {
@@ -121,9 +167,16 @@ mod tests {
 
     #[test]
     fn profiles_by_name() {
-        assert_eq!(profile("g2"), Ok(Profile::G2));
-        assert_eq!(profile("conic=0.5"), Ok(Profile::Conic(0.5)));
-        for bad in ["", "conic", "conic=", "conic=-1", "conic=nan", "conic=inf", "round", "curve.json"] {
+        let known = |text: &str| match section(text) {
+            Ok(Section { curve: Curve::Known(profile), reach }) => Some((profile, reach)),
+            _ => None,
+        };
+        assert_eq!(known("g2"), Some((Profile::G2, None)));
+        assert_eq!(known("conic=0.5"), Some((Profile::Conic(0.5), None)));
+        assert_eq!(known("conic=2,reach=2.4"), Some((Profile::Conic(2.0), Some(2.4))));
+        assert_eq!(section("curve.json").map(|s| s.curve), Ok(Curve::File("curve.json".into())));
+        assert!(section("arc,reach=0").is_err_and(|e| e.contains("radii")));
+        for bad in ["", "conic", "conic=", "conic=-1", "conic=nan", "conic=inf", "round"] {
             assert!(profile(bad).is_err_and(|e| e.contains("chamfer")), "{bad}");
         }
     }

@@ -196,3 +196,33 @@ fn blend_options_need_a_radius() {
         }
     }
 }
+
+/// Vertices slide onto the blend: the faces are those of the input, in order, and the section is the file's.
+#[test]
+fn keep_moves_vertices_alone() {
+    let bench = Bench::new();
+    let off = |mesh: &fusion::mesh_core::TriMesh| {
+        let mut text = format!("OFF\n{} {} 0\n", mesh.positions.len(), mesh.faces.len());
+        mesh.positions.iter().for_each(|p| writeln!(text, "{:?} {:?} {:?}", p.x, p.y, p.z).unwrap());
+        mesh.faces.iter().for_each(|f| writeln!(text, "3 {} {} {}", f[0], f[1], f[2]).unwrap());
+        text
+    };
+    let ball = |z: f64| shapes::posed(shapes::geodesic_sphere(1.0, 20), DQuat::from_rotation_x(0.4 + z), DVec3::Z * z);
+    bench.file("a.off", &off(&ball(-0.6)));
+    bench.file("b.off", &off(&ball(0.6)));
+    bench.file("line.toml", "degree = 1\npoints = [[1, 0], [0, 1]]");
+    bench.run("union a.off b.off -o joined.off").expect(0);
+    let faces =
+        |name: &str| bench.read(name).lines().filter(|l| l.starts_with("3 ")).map(String::from).collect::<Vec<_>>();
+    let seam = "--near 0.8,0,0 --angle 25";
+    for options in ["", "--profile line.toml", "--profile conic=2,reach=1.5"] {
+        bench.run(&format!("blend joined.off -o kept.off --radius 0.25 --surface keep {seam} {options}")).expect(0);
+        assert_eq!(faces("kept.off"), faces("joined.off"));
+    }
+    bench.run("union a.off b.off -o once.off --radius 0.25 --surface keep").expect(0);
+    assert!(volume(&bench, "once.off") > volume(&bench, "joined.off"));
+    let refused = bench.run(&format!("blend joined.off -o no.off --radius 0.02 --surface keep {seam}")).expect(4);
+    assert!(refused.stderr.contains("stitch"), "{}", refused.stderr);
+    let missing = bench.run(&format!("blend joined.off -o no.off --radius 0.2 {seam} --profile none.json")).expect(3);
+    assert!(missing.stderr.contains("none.json"));
+}

@@ -23,8 +23,7 @@ fn teapot(near: f64, far: f64) -> (Mesh, BlendCurve) {
     let mesh = Connected::new(joined.mesh).expect("a boolean is a manifold");
     let size = |p: DVec3| near + (far - near) * (2.0 * away(p) - 1.0).clamp(0.0, 1.0);
     let wanted = remesh::Params { feature_angle: 25.0, shortest_feature: 8.0, ..remesh::Params::new(near) };
-    let even =
-        remesh(&mesh, &Frozen::default(), Sizing::Field(&size), &wanted, Projection::Input, &Watch::default());
+    let even = remesh(&mesh, &Frozen::default(), Sizing::Field(&size), &wanted, Projection::Input, &Watch::default());
     let mesh = Connected::new(even.expect("a remeshed teapot").mesh).expect("a manifold");
     // The seam is a feature and still among the edges: three points of it, and the paths that hug it.
     let nearest = |p: DVec3| {
@@ -50,11 +49,11 @@ fn stages(c: &mut Criterion) {
         ("general", custom(include_str!("../../../docs/profiles/general.toml")), None),
         ("ornate", custom(include_str!("../../../docs/profiles/ornate.json")), None),
     ];
-    for (near, far) in [(0.111, 0.111), (0.18, 0.275)] {
+    for (near, far, radius) in [(0.111, 0.111, 0.35), (0.16, 0.284, 0.3)] {
         let (mesh, curve) = teapot(near, far);
         for (name, profile, reach) in profiles.clone() {
             let surface = Surface::Keep(keep::Params::default());
-            let params = Params { surface, profile, reach, ..Params::new(0.35) };
+            let params = Params { surface, profile, reach, ..Params::new(radius) };
             let name = format!("teapot, {name}");
             group.bench_function(BenchmarkId::new(name, mesh.face_count()), |b| {
                 b.iter(|| blend(black_box(&mesh), std::slice::from_ref(&curve), &params, &Watch::default()));

@@ -297,7 +297,7 @@ fn assemble(
     let cut = &opened.embedded.mesh;
     let mut strips = Vec::with_capacity(rails.len());
     let mut first_new = cut.vertex_count() as u32;
-    let fineness = Fineness { tolerance: params.tolerance, chord: step };
+    let fineness = Fineness { tolerance: params.tolerance, chord: step, reach: params.reach };
     let mut folds = Vec::new();
     for (rail, linkages) in rails.iter().zip(&opened.linkages) {
         let strip = sweep(rail, linkages, &params.profile, fineness, first_new, |v| cut.position(v));

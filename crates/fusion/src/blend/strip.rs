@@ -13,6 +13,8 @@ pub(crate) struct Fineness {
     pub tolerance: f64,
     /// Wanted chord length across, in model units.
     pub chord: f64,
+    /// Where the profile's apex is moved; see [`super::Params::reach`].
+    pub reach: Option<f64>,
 }
 
 /// Triangles of one strip, and where they face the wrong way.
@@ -83,6 +85,7 @@ pub(crate) fn sweep(
 fn profile_points(profile: &Profile, ball: &Sample, feet: [DVec3; 2], fineness: Fineness, row: &mut Vec<DVec3>) {
     row.clear();
     let section = section(ball.center, feet);
+    let section = fineness.reach.map_or(section, |reach| section.with_reach(ball.center, reach));
     let bend = (feet[0] - ball.center).angle_between(feet[1] - ball.center);
     // Chords of an arc of angle δ stand off by r·(1 − cos(δ/2)).
     let widest = 2.0 * (1.0 - fineness.tolerance.clamp(1e-9, 0.5)).acos();

@@ -107,12 +107,8 @@ fn roll_all(
 ) -> Result<Vec<Rail>, Error> {
     let rolled = curves.par_iter().map(|curve| {
         let with_step = |step: f64| {
-            let rolling = spine::Params {
-                alpha: params.alpha,
-                solver: params.solver,
-                step,
-                ..spine::Params::new(params.radius)
-            };
+            let rolling =
+                spine::Params { alpha: params.alpha, solver: params.solver, step, ..spine::Params::new(params.radius) };
             roll(mesh, curve, curves, &rolling)
         };
         let step = (curve.length(mesh) / f64::from(how.samples.max(8))).min(0.5 * params.radius);
