@@ -206,7 +206,7 @@ pub struct Compose {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=16))]
     pub rings: Option<u8>,
     /// Size of the tessellation's cells, as a share of the openings' mean edge
-    #[arg(long, value_name = "SHARE", default_value_t = 0.8, value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = share)]
     pub cell: f64,
     /// Edge length of the surface away from the openings [default: that of the nearest openings]
     #[arg(long, value_name = "L", value_parser = positive_length)]

@@ -24,6 +24,7 @@ pub(super) fn constraints(parts: &[Connected<TriMesh>], openings: &[Opening], pa
     let mut rings: Vec<Constraint> = vec![];
     let mut off: Vec<Constraint> = vec![];
     let mut merge = f64::INFINITY;
+    let spacing = spacing(openings.iter().map(|o| o.vertices.len()).sum());
     for opening in openings {
         let mesh = &parts[opening.part];
         let offset = OFFSET * median_edge(opening);
@@ -33,6 +34,8 @@ pub(super) fn constraints(parts: &[Connected<TriMesh>], openings: &[Opening], pa
         let points: Vec<DVec3> = vertices.iter().map(|&v| mesh.position(v)).collect();
         // Vertices by ring come nearest first, so what is thinned away is far out.
         let kept = thin(&points, &points[..boundary], &Thinning::new(opening.mean_edge()));
+        let mut outside: Vec<DVec3> = vec![];
+        let apart = spacing * opening.mean_edge();
         for i in kept {
             let (v, p) = (vertices[i], points[i]);
             let normal = one_sided_normal(mesh, v, mesh.ring(v).map(HalfedgeId::face));
@@ -42,6 +45,10 @@ pub(super) fn constraints(parts: &[Connected<TriMesh>], openings: &[Opening], pa
                 continue;
             }
             list.push(Constraint::on_surface(p));
+            if apart > 0.0 && outside.iter().any(|q| q.distance_squared(p) < apart * apart) {
+                continue;
+            }
+            outside.push(p);
             off.push(Constraint::off_surface(p + offset * normal, offset));
             if params.method == Method::Montage {
                 off.push(Constraint::off_surface(p - offset * normal, -offset));
@@ -61,6 +68,17 @@ pub(super) fn constraints(parts: &[Connected<TriMesh>], openings: &[Opening], pa
     on.extend(rings);
     on.extend(off);
     Constraints { all: on, merge }
+}
+
+/// How far apart, in edges, points off the surface are. The rings already hold the tangent planes: on smooth parts
+/// points three edges apart do as well (mean angle across the weld 1.64° for 1.55°), on rough ones not quite, so only
+/// large jobs save them.
+fn spacing(boundary: usize) -> f64 {
+    match boundary {
+        0..400 => 0.0,
+        400..800 => 1.5,
+        _ => 3.0,
+    }
 }
 
 /// How the field is solved.

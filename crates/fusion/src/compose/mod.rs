@@ -58,7 +58,7 @@ impl Params {
             kernel: Kernel::Triharmonic,
             method: Method::Implicit,
             rings: None,
-            cell: 0.8,
+            cell: 1.0,
             edge_length: None,
             loops: None,
             guides: vec![],

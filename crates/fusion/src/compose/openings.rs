@@ -21,9 +21,14 @@ pub(super) struct Opening {
 }
 
 impl Opening {
+    /// Its length.
+    pub fn perimeter(&self) -> f64 {
+        self.rim.lengths().sum()
+    }
+
     /// Its edges' mean length.
     pub fn mean_edge(&self) -> f64 {
-        self.rim.lengths().sum::<f64>() / self.walk.len() as f64
+        self.perimeter() / self.walk.len() as f64
     }
 }
 

@@ -11,6 +11,14 @@ use rbf_solve::Field;
 use remesh::{Frozen, Projection, Sizing};
 use std::collections::BTreeSet;
 
+/// Rounds of remeshing, and the share of the way that a step of relaxation goes: the fewest and the longest with which
+/// triangles of marching cubes become nearly equilateral.
+const ROUNDS: usize = 7;
+const LAMBDA: f64 = 0.5;
+
+/// Edges of the surface around an opening, at least.
+const ROUND: f64 = 28.0;
+
 /// The surface between the openings, whose first vertices are theirs. `fineness` divides the cells.
 pub(super) fn surface(
     openings: &[Opening],
@@ -22,8 +30,10 @@ pub(super) fn surface(
 ) -> Result<Transition, Error> {
     let rims: Vec<Rim> = openings.iter().map(|o| o.rim.clone()).collect();
     let how = lmc_tessellate::Params {
-        cell: suggested_cell(&rims) * params.cell / (0.8 * fineness),
+        cell: cell_size(&rims, openings, params) / fineness,
         space: params.space,
+        // Remeshing ends on the field anyway.
+        steps: 0,
         ..lmc_tessellate::Params::default()
     };
     let values = |points: &[DVec3], out: &mut [f64]| field.values(points, out);
@@ -32,6 +42,14 @@ pub(super) fn surface(
     report.figures.insert("cell".into(), how.cell);
     let mesh = report.time("remesh", || even_out(made.mesh, openings, field, params, watch))?;
     Ok(Transition { mesh, ..made })
+}
+
+/// The wanted share of the mean edge, or less where openings are close or of few edges.
+fn cell_size(rims: &[Rim], openings: &[Opening], params: &Params) -> f64 {
+    let (safe, edge) = (suggested_cell(rims), mean_edge(openings));
+    let least = openings.iter().map(|o| o.perimeter() / ROUND).fold(edge, f64::min).max(0.25 * edge);
+    let wanted = params.cell * least;
+    if safe < 0.799 * edge { wanted.min(safe) } else { wanted }
 }
 
 /// Remeshes to edges as long as those of the nearest openings, or as asked, with vertices on the zero set.
@@ -46,17 +64,20 @@ fn even_out(
     let size = |p: DVec3| sizes.at(p);
     let reach = 0.5 * mean_edge(openings);
     let project = |points: &mut [DVec3]| onto(field, points, reach);
-    let Ok(connected) = Connected::new(mesh) else { return Err(Error::Closed) };
-    let how = remesh::Params {
-        feature_angle: 180.0,
-        ..remesh::Params::new(params.edge_length.unwrap_or_else(|| mean_edge(openings)))
-    };
-    let made =
-        remesh::remesh(&connected, &Frozen::default(), Sizing::Field(&size), &how, Projection::Field(&project), watch)?;
-    Ok(made.mesh)
+    let edge = params.edge_length.unwrap_or_else(|| mean_edge(openings));
+    // The field is dear: all rounds but the last follow the tessellated surface.
+    let mut mesh = mesh;
+    for (rounds, projection) in [(ROUNDS - 1, Projection::Input), (1, Projection::Field(&project))] {
+        let how = remesh::Params { feature_angle: 180.0, rounds, lambda: LAMBDA, ..remesh::Params::new(edge) };
+        let Ok(connected) = Connected::new(mesh) else { return Err(Error::Closed) };
+        mesh = remesh::remesh(&connected, &Frozen::default(), Sizing::Field(&size), &how, projection, watch)?.mesh;
+    }
+    let rims: usize = openings.iter().map(|o| o.vertices.len()).sum();
+    onto(field, &mut mesh.positions[rims..], reach);
+    Ok(mesh)
 }
 
-/// One Newton step of every point towards the zero set, and another where the first was long.
+/// One Newton step of every point towards the zero set.
 fn onto(field: &Field, points: &mut [DVec3], reach: f64) {
     let mut values = vec![0.0; points.len()];
     let mut gradients = vec![DVec3::ZERO; points.len()];
@@ -81,18 +102,20 @@ impl Sizes {
     /// How fast lengths may change with the distance from an opening.
     const GROWTH: f64 = 0.3;
     /// Places on each opening.
-    const SAMPLES: usize = 128;
+    const SAMPLES: usize = 64;
 
     fn new(openings: &[Opening], wanted: Option<f64>) -> Self {
         let mut samples = vec![];
         for o in openings {
             let lengths: Vec<f64> = o.rim.lengths().collect();
             let n = lengths.len();
+            // A neck of a few edges would be a prism.
+            let finest = o.perimeter() / ROUND;
             for i in (0..n).step_by(n.div_ceil(Self::SAMPLES)) {
-                // A cut leaves slivers: single edges say little.
+                // A cut leaves slivers: means by length, as points of the curve see its edges, pass over them.
                 let window = 7.min(n);
-                let mean = (0..window).map(|k| lengths[(i + n + k - window / 2) % n]).sum::<f64>() / window as f64;
-                samples.push((o.rim.points[i], mean));
+                let near = (0..window).map(|k| lengths[(i + n + k - window / 2) % n]);
+                samples.push((o.rim.points[i], mean_by_length(near).min(finest)));
             }
         }
         Self { samples, wanted }
@@ -117,6 +140,11 @@ impl Sizes {
         }
         sum / weights
     }
+}
+
+fn mean_by_length(lengths: impl Iterator<Item = f64>) -> f64 {
+    let (sum, squares) = lengths.fold((0.0, 0.0), |(s, q), l| (s + l, q + l * l));
+    squares / sum
 }
 
 /// Splits edges of the surface that join two vertices of an opening which the part already joins by an edge: welded,
