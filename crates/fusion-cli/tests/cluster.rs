@@ -79,7 +79,7 @@ fn what_cannot_be_is_refused_and_leaves_no_file() {
     bench.file("bad.toml", "version = 1\n[[cluster]]\nvertex = 3\n");
     let before = bench.files();
     for (line, code, words) in [
-        ("cluster slab.off -o out.ply --degree 2", 4, "degree 3,3 works"),
+        ("cluster slab.off -o out.ply --degree 2", 4, "degree 3,2 works"),
         ("cluster slab.off -o out.ply --continuity 2 --degree 4,4", 4, "works"),
         ("cluster slab.off -o out.ply --clusters twice.toml", 4, "two clusters"),
         ("cluster slab.off -o out.ply --clusters apart.toml", 4, "tree"),

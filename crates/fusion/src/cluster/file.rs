@@ -17,29 +17,70 @@ struct File {
     cluster: Vec<Entry>,
 }
 
-#[derive(Deserialize)]
+/// One cluster, as files and recipes name it.
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
-    vertices: Vec<u32>,
-    degree: Option<Degrees>,
-    extent: Option<f64>,
-    bulge: Option<f64>,
+pub struct Entry {
+    /// Its vertices.
+    pub vertices: Vec<u32>,
+    /// A number, or two for a cluster of four sides.
+    pub degree: Option<Degrees>,
+    /// Reach along its open edges, as a share of the edge.
+    pub extent: Option<f64>,
+    /// 0 for the fairest patch, towards 1 a sharper one.
+    pub bulge: Option<f64>,
+    /// Control points moved by hand.
     #[serde(default, rename = "move")]
-    moves: Vec<MoveEntry>,
+    pub moves: Vec<MoveEntry>,
 }
 
-#[derive(Deserialize)]
+/// A degree, as files and recipes write it.
+#[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(untagged)]
-enum Degrees {
+pub enum Degrees {
+    /// `3`
     Same(usize),
+    /// `[4, 2]`
     Tensor([usize; 2]),
 }
 
-#[derive(Deserialize)]
+/// A control point to be moved.
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct MoveEntry {
-    point: Vec<u8>,
-    by: [f64; 3],
+pub struct MoveEntry {
+    /// Its index.
+    pub point: Vec<u8>,
+    /// By how much, in model units.
+    pub by: [f64; 3],
+}
+
+impl Degrees {
+    /// The same for the library.
+    pub fn degree(&self) -> Degree {
+        match *self {
+            Self::Same(n) => Degree::Same(n),
+            Self::Tensor([a, b]) => Degree::Tensor(a, b),
+        }
+    }
+}
+
+impl Entry {
+    /// The same for the library.
+    ///
+    /// # Errors
+    /// [`FileError`] for moves by numbers that are not finite.
+    pub fn spec(&self) -> Result<Spec, FileError> {
+        if let Some(step) = self.moves.iter().find(|m| !DVec3::from(m.by).is_finite()) {
+            return Err(FileError(format!("control point {:?} is to move by a number that is not finite", step.point)));
+        }
+        Ok(Spec {
+            vertices: self.vertices.clone(),
+            degree: self.degree.as_ref().map(Degrees::degree),
+            extent: self.extent,
+            bulge: self.bulge,
+            moves: self.moves.iter().map(|m| Move { index: m.point.clone(), by: m.by.into() }).collect(),
+        })
+    }
 }
 
 /// Reads `version = 1` and a list of `[[cluster]]` with `vertices`, and optionally `degree` (a number, or two for a
@@ -58,22 +99,7 @@ pub fn clusters_from_toml(text: &str) -> Result<Vec<Spec>, FileError> {
     if file.version != 1 {
         return Err(FileError(format!("version {} is not known; this program reads version 1", file.version)));
     }
-    let spec = |entry: Entry| {
-        if let Some(step) = entry.moves.iter().find(|m| !DVec3::from(m.by).is_finite()) {
-            return Err(FileError(format!("control point {:?} is to move by a number that is not finite", step.point)));
-        }
-        Ok(Spec {
-            vertices: entry.vertices,
-            degree: entry.degree.map(|d| match d {
-                Degrees::Same(n) => Degree::Same(n),
-                Degrees::Tensor([a, b]) => Degree::Tensor(a, b),
-            }),
-            extent: entry.extent,
-            bulge: entry.bulge,
-            moves: entry.moves.into_iter().map(|m| Move { index: m.point, by: m.by.into() }).collect(),
-        })
-    };
-    file.cluster.into_iter().map(spec).collect()
+    file.cluster.iter().map(Entry::spec).collect()
 }
 
 #[cfg(test)]

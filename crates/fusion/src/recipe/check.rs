@@ -5,7 +5,7 @@ use super::tables::{Part, PartCut};
 use super::values::{Length, Pose, profile};
 use super::{Error, Recipe, Step};
 use crate::cut::PlaneCut;
-use crate::{blend, compose};
+use crate::{blend, cluster, compose};
 use glam::DVec3;
 use mesh_io::Format;
 use std::ops::Range;
@@ -85,8 +85,12 @@ impl Recipe {
         for i in 0..self.blend.len() {
             self.rolling_of_blend(i, 1.0)?;
         }
+        for i in 0..self.cluster.len() {
+            self.clustering(i, Format::Off)?;
+        }
         let used = self.boolean.iter().flat_map(|b| b.parts.iter().flatten());
-        for name in used.chain(self.blend.iter().filter_map(|b| b.part.as_ref())) {
+        let used = used.chain(self.blend.iter().filter_map(|b| b.part.as_ref()));
+        for name in used.chain(self.cluster.iter().filter_map(|c| c.part.as_ref())) {
             if !names.contains(&name.get_ref().as_str()) {
                 let known = names.join(", ");
                 return Err(self.error(name.span(), format!("there is no part `{}`, only {known}", name.get_ref())));
@@ -188,6 +192,36 @@ impl Recipe {
     pub(super) fn rolling_of_blend(&self, i: usize, diagonal: f64) -> Result<blend::Params, Error> {
         let b = &self.blend[i];
         self.rolling([&b.profile, &b.overlap], [&b.alpha, &b.tolerance], &b.radius, diagonal)
+    }
+
+    /// How a polyhedron is rounded.
+    pub(super) fn clustering(&self, i: usize, format: Format) -> Result<cluster::Params, Error> {
+        let c = &self.cluster[i];
+        let count = |value: &Option<Spanned<u8>>, least: u8| match value {
+            Some(v) if !(least..=8).contains(v.get_ref()) => {
+                Err(self.error(v.span(), format!("must be a whole number from {least} to 8")))
+            }
+            Some(v) => Ok(Some(usize::from(*v.get_ref()))),
+            None => Ok(None),
+        };
+        let share = |value: &Option<Spanned<f64>>, least: f64, most: f64, default: f64| match value {
+            Some(v) => self.within(v, least, most),
+            None => Ok(default),
+        };
+        let mut params = cluster::Params::new(format);
+        let patch = &mut params.patch;
+        patch.continuity = count(&c.continuity, 1)?.unwrap_or(patch.continuity);
+        patch.degree = c.degree.as_ref().map(cluster::Degrees::degree);
+        patch.extent = share(&c.extent, 1e-3, 1.0, patch.extent)?;
+        patch.bulge = share(&c.bulge, 0.0, 0.99, patch.bulge)?;
+        patch.sharp.clone_from(&c.sharp);
+        patch.all_sharp = c.all_sharp;
+        patch.strip.balance = share(&c.mu, 1e-3, 0.999, patch.strip.balance)?;
+        patch.strip.order = count(&c.order, 0)?.unwrap_or(patch.continuity);
+        params.tolerance = share(&c.tolerance, 1e-7, 0.1, params.tolerance)?;
+        let spec = |e: &cluster::Entry| e.spec().map_err(|e| self.error(0..0, e.to_string()));
+        params.clusters = c.clusters.as_ref().map(|all| all.iter().map(spec).collect()).transpose()?;
+        Ok(params)
     }
 
     fn rolling(

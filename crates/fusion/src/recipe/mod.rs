@@ -39,5 +39,5 @@ mod tables;
 mod values;
 
 pub use error::Error;
-pub use tables::{Blend, Boolean, Compose, Part, PartCut, Plane, Recipe, Step};
+pub use tables::{Blend, Boolean, Cluster, Compose, Part, PartCut, Plane, Recipe, Step};
 pub use values::{Length, Rotation};

@@ -2,6 +2,7 @@
 
 use super::rims::{self, Rims, split_loop};
 use super::{Recipe, Step};
+use crate::cluster::cluster;
 use crate::compose::compose;
 use crate::cut::{self, cut};
 use crate::features;
@@ -62,6 +63,7 @@ impl Recipe {
                 Step::Boolean => kitchen.booleans()?,
                 Step::Compose => kitchen.composes()?,
                 Step::Blend => kitchen.blends()?,
+                Step::Cluster => kitchen.clusters()?,
                 Step::Output => {}
             }
         }
@@ -202,6 +204,21 @@ impl Kitchen<'_> {
         Ok(())
     }
 
+    fn clusters(&mut self) -> Result<(), Error> {
+        for (i, table) in self.recipe.cluster.iter().enumerate() {
+            let at = match &table.part {
+                Some(name) => self.find(name)?,
+                None => self.only("name the part to round")?,
+            };
+            let params = self.recipe.clustering(i, self.format)?;
+            let name = format!("clusters of {}", self.pieces[at].name);
+            let models = self.models(&[at]);
+            let made = cluster(&models[0], &params, self.watch).map_err(|e| step(&name, e))?;
+            self.take_up(&[at], models, &name, made.outcome);
+        }
+        Ok(())
+    }
+
     /// Validates and describes the one piece that is left.
     fn serve(mut self) -> Result<Outcome, Error> {
         let last = self.only("join what is left over")?;
@@ -226,6 +243,7 @@ impl Kitchen<'_> {
         report.warnings.extend(given.warnings);
         report.residuals.extend(given.residuals);
         report.figures.extend(given.figures);
+        report.notes.extend(given.notes);
         for mut stage in given.stages {
             stage.name = format!("{name}: {}", stage.name);
             report.stages.push(stage);
@@ -323,6 +341,27 @@ mod tests {
         // The same bits where nothing was posed.
         let same = run("[[part]]\nname = \"a\"\nmesh = \"cube.off\"", std::slice::from_ref(&cube)).unwrap();
         assert_eq!(same.model.mesh, cube.mesh);
+    }
+
+    #[test]
+    fn a_cube_is_rounded_by_clusters() {
+        let cube = Model::from(shapes::cuboid(DVec3::ONE));
+        let text = "
+            [[part]]
+            name = \"cube\"
+            mesh = \"cube.off\"
+            scale = 2.0
+            [[cluster]]
+            extent = 0.5
+            tolerance = 1e-3
+            clusters = [{ vertices = [0] }, { vertices = [1, 3], degree = [4, 2] }]
+        ";
+        let round = run(text, &[cube]).unwrap();
+        assert_eq!((round.report.figures["patches"], round.report.figures["strips"]), (2.0, 1.0));
+        let rest = volume(&round.model.mesh);
+        assert!(rest > 7.0 && rest < 8.0, "{rest}");
+        // The five vertices in no cluster are still the input's.
+        assert_eq!(round.report.kept_vertices, 5);
     }
 
     #[test]

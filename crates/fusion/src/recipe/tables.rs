@@ -13,7 +13,7 @@ pub struct Recipe {
     pub version: Spanned<u32>,
     /// Where the result goes, relative to the recipe.
     pub output: PathBuf,
-    /// The kinds of steps in another order than cut, pose, boolean, compose, blend. Kinds left out are not taken.
+    /// The kinds of steps in another order than cut, pose, boolean, compose, blend, cluster. Kinds left out are not taken.
     pub steps: Option<Vec<Spanned<Step>>>,
     /// The parts.
     #[serde(default, rename = "part")]
@@ -27,6 +27,9 @@ pub struct Recipe {
     /// Blends along feature curves.
     #[serde(default)]
     pub blend: Vec<Blend>,
+    /// Polyhedra rounded by clusters.
+    #[serde(default)]
+    pub cluster: Vec<Cluster>,
     /// The recipe as written, for messages.
     #[serde(skip)]
     pub(super) text: String,
@@ -46,13 +49,15 @@ pub enum Step {
     Compose,
     /// Blends along feature curves.
     Blend,
+    /// Polyhedra rounded by clusters.
+    Cluster,
     /// Writing. Always the last.
     Output,
 }
 
 impl Step {
     /// The order of steps where a recipe names none.
-    pub const ORDER: [Self; 5] = [Self::Cut, Self::Pose, Self::Boolean, Self::Compose, Self::Blend];
+    pub const ORDER: [Self; 6] = [Self::Cut, Self::Pose, Self::Boolean, Self::Compose, Self::Blend, Self::Cluster];
 }
 
 /// One input.
@@ -162,4 +167,34 @@ pub struct Blend {
     pub alpha: Option<Spanned<f64>>,
     /// Chord tolerance as a share of the radius, from 1e-6 to 0.5.
     pub tolerance: Option<Spanned<f64>>,
+}
+
+/// A polyhedron rounded by clusters.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cluster {
+    /// Which part, by name. The only one there is where left out.
+    pub part: Option<Spanned<String>>,
+    /// Order of contact with the faces, 1 to 8.
+    pub continuity: Option<Spanned<u8>>,
+    /// A number, or two for clusters of four sides.
+    pub degree: Option<crate::cluster::Degrees>,
+    /// Reach along open edges, as a share of the edge.
+    pub extent: Option<Spanned<f64>>,
+    /// 0 for the fairest patches, towards 1 sharper ones.
+    pub bulge: Option<Spanned<f64>>,
+    /// Edges that stay sharp, by their vertices.
+    #[serde(default)]
+    pub sharp: Vec<[u32; 2]>,
+    /// Whether all edges between clusters stay sharp.
+    #[serde(default)]
+    pub all_sharp: bool,
+    /// Balance of the strips.
+    pub mu: Option<Spanned<f64>>,
+    /// Order of contact of strips with patches, 0 to 8.
+    pub order: Option<Spanned<u8>>,
+    /// Chord tolerance, as a share of the diagonal.
+    pub tolerance: Option<Spanned<f64>>,
+    /// The clusters; chosen where left out.
+    pub clusters: Option<Vec<crate::cluster::Entry>>,
 }
