@@ -41,10 +41,10 @@ fn six_caps_of_a_ball_rejoin_to_the_ball() {
     assert!(off < 1e-3, "{off}");
 }
 
-/// Tubes of one radius face each other: between them the surface comes ever nearer to the tube.
+/// Tubes of one radius face each other: the surface between them is the tube, nearly, at any resolution.
 #[test]
 fn tubes_of_one_radius_join_to_the_tube() {
-    let off = [24, 48, 96].map(|n| {
+    for n in [24, 48, 96] {
         let tube = |z: f64| {
             Model::from(shapes::posed(shapes::open_cylinder(1.0, 1.0, n, n / 6), DQuat::IDENTITY, z * DVec3::Z))
         };
@@ -59,9 +59,9 @@ fn tubes_of_one_radius_join_to_the_tube() {
         let loops = vec![(0, near(&parts[0], true)), (1, near(&parts[1], false))];
         let params = Params { kernel: Kernel::Hermite, loops: Some(loops), ..Params::new(Format::Obj) };
         let mesh = compose(&parts, &params, &Watch::default()).unwrap().model.mesh;
-        mesh.positions.iter().map(|p| (p.truncate().length() - 1.0).abs()).fold(0.0, f64::max)
-    });
-    assert!(off[2] < 0.01 && off[2] <= off[0], "{off:?}");
+        let off = mesh.positions.iter().map(|p| (p.truncate().length() - 1.0).abs()).fold(0.0, f64::max);
+        assert!(off < 5e-4, "{n}: {off}");
+    }
 }
 
 /// One opening faces two, and one three.

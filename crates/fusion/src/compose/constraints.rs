@@ -75,8 +75,8 @@ pub(super) fn constraints(parts: &[Connected<TriMesh>], openings: &[Opening], pa
 /// large jobs save them.
 fn spacing(boundary: usize) -> f64 {
     match boundary {
-        0..400 => 0.0,
-        400..800 => 1.5,
+        0..600 => 0.0,
+        600..1000 => 1.5,
         _ => 3.0,
     }
 }
