@@ -97,7 +97,7 @@ pub fn blend(
 }
 
 /// Rolls along every curve with steps of the curve's length over the number of samples, half a radius at most; once
-/// more with shorter ones where a spine's chords then stand off by more than the tolerance. Where a foot outruns the
+/// more with shorter ones where a spine's chords then stand off by more than the tolerance, and the mesh can show it. Where a foot outruns the
 /// centre, [`roll`] itself puts more samples in.
 fn roll_all(
     mesh: &Connected<TriMesh>,
@@ -113,8 +113,11 @@ fn roll_all(
         };
         let step = (curve.length(mesh) / f64::from(how.samples.max(8))).min(0.5 * params.radius);
         let rail = with_step(step)?;
+        // Finer than a quarter of what the mesh's own edges stand off by would be lost on it.
+        let edge = curve.length(mesh) / curve.halfedges.len() as f64;
+        let wanted = (params.tolerance * params.radius).max(edge * edge / (32.0 * params.radius));
         // Heights fall as the square of the step.
-        let refined = (chord_height(&rail) / (params.tolerance * params.radius)).sqrt();
+        let refined = (chord_height(&rail) / wanted).sqrt();
         if refined > 1.0 { with_step(step / refined.min(FINEST)) } else { Ok(rail) }
     });
     rolled.collect::<Result<_, _>>().map_err(Error::from)

@@ -59,9 +59,9 @@ impl Target {
         let pulled = |i: usize| reach.map_or(sections[i], |reach| sections[i].with_reach(samples[i].center, reach));
         let mut curves: Vec<_> = (0..n).map(|i| profile.curve(&pulled(i))).collect();
         curves.push(curves[0].clone());
-        let lengths: Vec<f64> = curves[..n].iter().map(|c| chords(c).1).collect();
+        let lengths: Vec<f64> = curves[..n].iter().map(|c| chords(c, 8).1).collect();
         let longest = (0..n).max_by(|&a, &b| lengths[a].total_cmp(&lengths[b]).then(b.cmp(&a))).unwrap_or(0);
-        let even = even_steps(&chords(&curves[longest]).0);
+        let even = even_steps(&chords(&curves[longest], STEPS).0);
         let sweep = Sweep::new(stations.clone(), curves)
             .map_err(|source| Refusal::Profile { at: samples[0].center, source })?;
         let across = lengths.iter().sum::<f64>() / n as f64;
@@ -102,12 +102,12 @@ fn greatest_curvature(chain: &[DVec3]) -> f64 {
     (0..n).map(at).fold(0.0, f64::max)
 }
 
-/// Lengths from the start of a curve to `STEPS` even steps of its parameter, and the whole.
-fn chords(curve: &profile_nurbs::Nurbs) -> (Vec<f64>, f64) {
+/// Lengths from the start of a curve to even steps of its parameter, and the whole.
+fn chords(curve: &profile_nurbs::Nurbs, steps: usize) -> (Vec<f64>, f64) {
     let [first, last] = curve.domain();
     let (mut lengths, mut run, mut before) = (vec![0.0], 0.0, curve.point(first));
-    for i in 1..=STEPS {
-        let here = curve.point(first + (last - first) * i as f64 / STEPS as f64);
+    for i in 1..=steps {
+        let here = curve.point(first + (last - first) * i as f64 / steps as f64);
         run += before.distance(here);
         lengths.push(run);
         before = here;
