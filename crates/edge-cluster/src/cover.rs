@@ -44,34 +44,35 @@ pub fn cover(solid: &Polyhedron, params: &Params) -> Cover {
         order => format!("the polyhedron has {count} vertices and {order} symmetries, which the clusters share"),
     });
     let short: Vec<u32> = orbits.iter().filter(|o| crowding(solid, o[0]) < params.short).flatten().copied().collect();
-    let merged = contracted(solid, &cluster_of, &short);
+    let merged = contracted(solid, &short);
     if !short.is_empty() && all_are_clusters(solid, &merged) {
         cover.reasons.push(format!("{} edges are too short for two blends and lie inside clusters", short.len()));
         cluster_of = merged;
     }
-    let alone = |cluster_of: &[u32], v: u32| cluster_of.iter().filter(|&&c| c == cluster_of[v as usize]).count() == 1;
-    loop {
-        let pairs = |orbit: &[u32]| {
-            let mut ends: Vec<u32> = orbit
-                .iter()
-                .flat_map(|&h| [solid.halfedges[h as usize].tail, solid.halfedges[h as usize].head])
-                .collect();
-            ends.sort_unstable();
-            ends.windows(2).all(|w| w[0] != w[1]) && ends.iter().all(|&v| alone(&cluster_of, v))
-        };
-        let candidates = orbits.iter().filter(|o| pairs(o)).filter_map(|o| Some((distortion(solid, o[0])?, o)));
-        let best = candidates.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|b| b.0 < params.distortion);
-        let Some((ratio, orbit)) = best else { break };
-        let h = solid.halfedges[orbit[0] as usize];
+    let mut size = vec![0u32; cluster_of.len()];
+    cluster_of.iter().for_each(|&c| size[c as usize] += 1);
+    let mut candidates: Vec<(f64, &Vec<u32>)> =
+        orbits.iter().filter_map(|o| Some((distortion(solid, o[0])?, o))).filter(|c| c.0 < params.distortion).collect();
+    candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (ratio, orbit) in candidates {
+        let ends = |h: &u32| [solid.halfedges[*h as usize].tail, solid.halfedges[*h as usize].head];
+        let mut all: Vec<u32> = orbit.iter().flat_map(ends).collect();
+        all.sort_unstable();
+        let alone = |&v: &u32| size[cluster_of[v as usize] as usize] == 1;
+        if !all.iter().all(alone) || all.windows(2).any(|w| w[0] == w[1]) {
+            continue;
+        }
+        for [a, b] in orbit.iter().map(ends) {
+            cluster_of[a.max(b) as usize] = a.min(b);
+            size[a.min(b) as usize] = 2;
+        }
+        let [a, b] = ends(&orbit[0]);
         cover.reasons.push(format!(
-            "{} pairs of vertices like {}-{} share a patch: the edge between them is {ratio:.2} of their mean open edge",
-            orbit.len(),
-            h.tail,
-            h.head
+            "{} pairs of vertices like {a}-{b} share a patch: the edge between them is {ratio:.2} of their mean open edge",
+            orbit.len()
         ));
-        cluster_of = contracted(solid, &cluster_of, orbit);
     }
-    let single = solid.vertices().filter(|&v| alone(&cluster_of, v)).count();
+    let single = solid.vertices().filter(|&v| size[cluster_of[v as usize] as usize] == 1).count();
     if single > 0 {
         cover.reasons.push(format!("{single} vertices have a patch each"));
     }
@@ -119,15 +120,21 @@ fn edge_orbits(solid: &Polyhedron, group: &[Vec<u32>]) -> Vec<Vec<u32>> {
     orbits
 }
 
-/// The clusters after some edges have gone inside, each by its lowest vertex.
-fn contracted(solid: &Polyhedron, cluster_of: &[u32], edges: &[u32]) -> Vec<u32> {
-    let mut merged = cluster_of.to_vec();
+/// The clusters if some edges go inside, each by its lowest vertex.
+fn contracted(solid: &Polyhedron, edges: &[u32]) -> Vec<u32> {
+    let mut parent: Vec<u32> = (0..solid.positions.len() as u32).collect();
+    let root = |parent: &[u32], mut v: u32| {
+        while parent[v as usize] != v {
+            v = parent[v as usize];
+        }
+        v
+    };
     for &h in edges {
         let half = solid.halfedges[h as usize];
-        let (a, b) = (merged[half.tail as usize], merged[half.head as usize]);
-        merged.iter_mut().filter(|c| **c == a.max(b)).for_each(|c| *c = a.min(b));
+        let (a, b) = (root(&parent, half.tail), root(&parent, half.head));
+        parent[a.max(b) as usize] = a.min(b);
     }
-    merged
+    (0..parent.len() as u32).map(|v| root(&parent, v)).collect()
 }
 
 fn members(solid: &Polyhedron, cluster_of: &[u32]) -> Vec<Vec<u32>> {

@@ -116,6 +116,9 @@ impl Polyhedron {
         };
         solid.trace_faces(&mesh, &group);
         solid.drop_flat_vertices();
+        if solid.faces.len() < 4 {
+            return Err(Error::NotManifold(format!("a mesh with {} planar faces", solid.faces.len()), None));
+        }
         solid.link_twins()?;
         solid.fit_planes(params.planarity * size)?;
         Ok(solid)
