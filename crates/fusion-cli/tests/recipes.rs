@@ -31,7 +31,7 @@ fn a_cut_leaves_one_clean_opening() {
     let bench = Bench::new();
     bench.run("cut a.off -o half.off --plane 0,0,0.25,0,0,1 --report r.json --origins o.json").expect(0);
     let info = json(bench.run("info half.off --json").expect(0).text());
-    assert_eq!(info["loops"].as_array().map(Vec::len), Some(1), "{info}");
+    assert_eq!(info["boundary_loops"].as_array().map(Vec::len), Some(1), "{info}");
     assert_eq!(info["self_intersections"], 0);
     let report = json(&bench.read("r.json"));
     assert_eq!((&report["command"], &report["kept_vertices"]), (&"cut".into(), &4.into()));
@@ -43,7 +43,7 @@ fn a_cut_leaves_one_clean_opening() {
 fn a_plane_that_misses_says_where_the_mesh_is() {
     let bench = Bench::new();
     let run = bench.run("cut a.off -o out.off --plane 0,0,7,0,0,1").expect(4);
-    assert!(run.stderr.contains("from -7 to -6"), "{}", run.stderr);
+    assert!(run.stderr.contains("from -7.5 to -6.5"), "{}", run.stderr);
     assert_eq!(bench.files(), ["a.off", "b.off"]);
 }
 

@@ -65,13 +65,13 @@ pub enum Error {
     },
     /// The iteration stalled.
     #[error(
-        "the iterative solver stopped at a residual of {residual:e} of the largest value after {iterations} steps, worst at constraint {worst} at {at}; raise `merge` or the tolerance, or use the dense solver"
+        "the iterative solver stopped at a residual of {residual:e} of the extent after {rounds} corrections, worst at constraint {worst} at {at}; raise `merge` or the tolerance, or use the dense solver"
     )]
     NotConverged {
-        /// Largest residual, as a share of the largest value.
+        /// Largest residual, as a share of the constraints' extent.
         residual: f64,
-        /// Steps taken.
-        iterations: usize,
+        /// Corrections made.
+        rounds: usize,
         /// Where the residual is largest.
         worst: usize,
         /// Where that is.

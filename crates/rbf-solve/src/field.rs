@@ -3,10 +3,11 @@
 use crate::admit::admit;
 use crate::affine::Affine;
 use crate::constraint::Constraint;
-use crate::dense::{Dense, functionals};
+use crate::dense;
 use crate::error::Error;
+use crate::iterate;
 use crate::kernel::Kernel;
-use crate::params::Params;
+use crate::params::{Params, Solver};
 use crate::sum::Sum;
 use glam::DVec3;
 
@@ -26,7 +27,8 @@ pub struct Field {
 }
 
 impl Field {
-    /// Fits a field to constraints. O(n³/3) time and 8n² bytes for n unknowns (one per value, three per gradient).
+    /// Fits a field to constraints: densely in O(n³/3) time and 8n² bytes for n unknowns (one per value, three per gradient), or
+    /// iteratively in O(n log n) of both; see [`Solver`].
     ///
     /// # Errors
     /// See [`Error`]: numbers that are none, constraints that contradict each other, that all lie on one plane or that leave the
@@ -37,30 +39,15 @@ impl Field {
         let mut system = admit(constraints, params)?;
         let affine = Affine::choose(&system)?;
         step(0.05)?;
-        let dense = Dense::factor(&system, &affine, params.kernel)?;
-        step(0.9)?;
-        let mut sum = Sum::new(&system.points, system.gradients.len());
-        let wanted = system.wanted();
-        let mut weights = vec![0.0; wanted.len()];
-        let mut missing = wanted.clone();
-        let mut best = f64::INFINITY;
-        // One step of refinement; a second look only measures.
-        for share in [0.95, 0.98] {
-            let before = sum.clone();
-            dense.correct(&missing, &mut weights, &mut sum, &system);
-            let got = functionals(&sum, params.kernel, &system);
-            let left: Vec<f64> = wanted.iter().zip(&got).map(|(w, g)| w - g).collect();
-            let worst = largest(&left);
-            if worst >= best || worst.is_nan() {
-                sum = before;
-                break;
-            }
-            (missing, best) = (left, worst);
-            step(share)?;
-        }
-        if !best.is_finite() {
-            return Err(system.singular_at(0));
-        }
+        let tolerance = match params.solver {
+            Solver::Dense => None,
+            Solver::Auto => (system.unknowns() > Solver::MOST_DENSE).then_some(Solver::TOLERANCE),
+            Solver::Iterative { tolerance } => Some(tolerance),
+        };
+        let (sum, missing) = match tolerance.filter(|_| system.gradients.is_empty()) {
+            Some(tolerance) => iterate::solve(&system, &affine, params.kernel, tolerance, &step)?,
+            None => dense::solve(&system, &affine, params.kernel, &step)?,
+        };
         let n = system.points.len();
         Ok(Self {
             kernel: params.kernel,

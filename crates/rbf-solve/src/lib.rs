@@ -25,6 +25,8 @@
 //! | `affine.rs` | the affine part and the four unknowns that carry it |
 //! | `sum.rs` | values and gradients of a sum of kernels, by vectors and threads |
 //! | `dense.rs` | assembling and factoring the whole system |
+//! | `iterate.rs`, `order.rs`, `screen.rs` | conjugate gradients for many constraints, and what makes them converge |
+//! | `far.rs`, `octree.rs`, `meet.rs`, `chebyshev.rs` | sums over many centres at many points |
 //! | `field.rs` | `Field`: fit, value, gradient |
 //! | `thin.rs` | fewer constraints far from the boundary |
 
@@ -32,13 +34,20 @@
 
 mod admit;
 mod affine;
+mod chebyshev;
 mod constraint;
 mod dense;
 mod error;
+mod far;
 mod field;
+mod iterate;
 mod kernel;
+mod meet;
 mod neighbours;
+mod octree;
+mod order;
 mod params;
+mod screen;
 mod sum;
 mod thin;
 

@@ -24,14 +24,21 @@ impl Default for Params {
 /// How the system is solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Solver {
-    /// Dense up to [`Solver::MOST_DENSE`] unknowns, iterative to 1e-8 beyond.
+    /// Dense up to [`Solver::MOST_DENSE`] unknowns, and wherever there are gradients; iterative to [`Solver::TOLERANCE`] beyond.
     #[default]
     Auto,
     /// Cholesky factorization of the whole system. Exact up to rounding; n²·8 bytes and n³/3 operations.
     Dense,
+    /// Conjugate gradients with fast sums. Without gradients only. Time and memory grow as n log n.
+    Iterative {
+        /// Largest residual allowed, as a share of the extent of the constraints. Above 0.
+        tolerance: f64,
+    },
 }
 
 impl Solver {
     /// Up to how many unknowns [`Solver::Auto`] solves densely. A constraint with a gradient has four unknowns, others one.
     pub const MOST_DENSE: usize = 4000;
+    /// The tolerance of [`Solver::Auto`].
+    pub const TOLERANCE: f64 = 1e-8;
 }

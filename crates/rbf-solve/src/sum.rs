@@ -9,7 +9,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// Points evaluated together. Eight doubles are one to four vectors of today's machines.
-const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 /// Points per task.
 const TASK: usize = 32 * LANES;
 
@@ -25,7 +25,7 @@ pub(crate) struct Sum {
     pub(crate) affine: [f64; 4],
 }
 
-type Block = [[f64; LANES]; 3];
+pub(crate) type Block = [[f64; LANES]; 3];
 
 impl Sum {
     /// All weights zero.
@@ -81,13 +81,7 @@ impl Sum {
         let mut sum: [f64; LANES] = std::array::from_fn(|l| c + cx * at[0][l] + cy * at[1][l] + cz * at[2][l]);
         let plain = self.x.len() - self.tilts[0].len();
         let (x, y, z, w) = (&self.x[..plain], &self.y[..plain], &self.z[..plain], &self.weights[..plain]);
-        for (((&x, &y), &z), &w) in x.iter().zip(y).zip(z).zip(w) {
-            for l in 0..LANES {
-                let (dx, dy, dz) = (at[0][l] - x, at[1][l] - y, at[2][l] - z);
-                let r2 = dx * dx + dy * dy + dz * dz;
-                sum[l] += w * K::value(r2, r2.sqrt());
-            }
-        }
+        add_block::<K>([x, y, z], w, at, &mut sum);
         for (i, t) in (plain..self.x.len()).zip(0..) {
             let (x, y, z, w) = (self.x[i], self.y[i], self.z[i], self.weights[i]);
             let [bx, by, bz] = [0, 1, 2].map(|k| self.tilts[k][t]);
@@ -131,6 +125,19 @@ impl Sum {
             }
         }
         sum
+    }
+}
+
+/// Adds centres without gradient weights to a block of points.
+#[inline(always)]
+pub(crate) fn add_block<K: Radial>(centres: [&[f64]; 3], weights: &[f64], at: &Block, sum: &mut [f64; LANES]) {
+    let [x, y, z] = centres;
+    for (((&x, &y), &z), &w) in x.iter().zip(y).zip(z).zip(weights) {
+        for l in 0..LANES {
+            let (dx, dy, dz) = (at[0][l] - x, at[1][l] - y, at[2][l] - z);
+            let r2 = dx * dx + dy * dy + dz * dz;
+            sum[l] += w * K::value(r2, r2.sqrt());
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 use proptest::prelude::*;
-use rbf_solve::{Constraint, Error, Field, Kernel, Params, Thinning, thin};
+use rbf_solve::{Constraint, Error, Field, Kernel, Params, Solver, Thinning, thin};
 
 fn fit(constraints: &[Constraint], kernel: Kernel) -> Result<Field, Error> {
     Field::fit(constraints, &Params { kernel, ..Params::default() }, &|_| true)
@@ -160,6 +160,36 @@ fn bits_do_not_depend_on_threads_or_batches() {
     let (one, two) = (run(1), run(2));
     assert!(one.1.iter().zip(&two.1).all(|(a, b)| a.to_bits() == b.to_bits()));
     assert!(points.iter().zip(&one.1).all(|(&p, v)| two.0.value(p).to_bits() == v.to_bits()));
+}
+
+/// The iteration has the dense solution for its twin.
+#[test]
+fn the_iterative_field_is_the_dense_field() {
+    let constraints = bumpy(600);
+    for kernel in [Kernel::Biharmonic, Kernel::Triharmonic] {
+        let solver = Solver::Iterative { tolerance: 1e-9 };
+        let fast = Field::fit(&constraints, &Params { kernel, solver, ..Params::default() }, &|_| true).unwrap();
+        let dense = fit(&constraints, kernel).unwrap();
+        assert!(fast.residual() <= 2.2e-9, "{kernel:?} {:e}", fast.residual());
+        for d in directions(100) {
+            let p = 1.03 * d;
+            assert!((fast.value(p) - dense.value(p)).abs() < 1e-7, "{kernel:?}");
+        }
+    }
+}
+
+#[test]
+fn many_constraints_hold_to_1e_8_of_the_box_for_any_number_of_threads() {
+    let constraints = bumpy(2020);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| fit(&constraints, Kernel::Triharmonic).unwrap())
+    };
+    let (one, two) = (run(1), run(2));
+    for c in constraints.iter().step_by(7) {
+        assert!((one.value(c.point) - c.value).abs() <= 2.2e-8);
+        assert_eq!(one.value(c.point).to_bits(), two.value(c.point).to_bits());
+    }
 }
 
 #[test]

@@ -1,0 +1,400 @@
+//! Sums of kernels over many centres at many points, in time that grows with their number and not with its square.
+//!
+//! The black-box fast multipole method ([FongDarve2009]): what is far is felt through grids of Chebyshev nodes, on cells of an octree.
+//! Kernels that are powers of the distance need one set of grid-to-grid matrices for all levels, and mirrored and turned pairs share
+//! theirs.
+
+use crate::chebyshev::Basis;
+use crate::kernel::{Kernel, Radial, with_kernel};
+use crate::meet::Meetings;
+use crate::octree::{Frame, Octree};
+use crate::sum::{LANES, add_block};
+use faer::linalg::matmul::matmul;
+use faer::traits::pulp::Arch;
+use faer::{Accum, MatMut, MatRef, Par};
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
+
+/// Pairs of cells per matrix product.
+const BATCH: usize = 64;
+/// Blocks of rows with a common number of columns.
+const BLOCKS: usize = 6;
+/// Products of target and source matter up to this sum of squared degrees, as a share of the largest squared degree of one.
+const JOINT: f64 = 1.3;
+
+/// How expansions on cells of width two act on each other, and the expansions themselves.
+pub(crate) struct Translations {
+    basis: Basis,
+    kernel: Kernel,
+    /// By sorted absolute offset (a ≥ b ≥ c, a in 2..4): column-major, targets down, products in order of their degree.
+    matrices: Vec<Vec<f64>>,
+    /// Rows of every matrix in blocks: first row, last row, and how many columns matter to them.
+    blocks: Vec<(usize, usize, usize)>,
+    /// Where each product stands by degree.
+    rank: Vec<usize>,
+}
+
+impl Translations {
+    /// Tabulates. O(degree⁷).
+    pub(crate) fn new(kernel: Kernel, degree: usize) -> Self {
+        let basis = Basis::new(degree);
+        let squared = |i: usize| basis.degrees[i].iter().map(|d| d * d).sum::<usize>();
+        let mut sorted: Vec<usize> = (0..basis.len()).collect();
+        sorted.sort_by_key(|&i| (squared(i), i));
+        let mut rank = vec![0; basis.len()];
+        sorted.iter().enumerate().for_each(|(at, &i)| rank[i] = at);
+        let nodes = basis.places(DVec3::ZERO, 1.0);
+        let matrices = with_kernel!(kernel, K => canonical()
+            .into_par_iter()
+            .map(|o| {
+                let mut table = vec![0.0; nodes.len() * nodes.len()];
+                Arch::new().dispatch(|| {
+                    for (row, &t) in table.chunks_mut(nodes.len()).zip(&nodes) {
+                        let from = t - 2.0 * o.as_dvec3();
+                        for (out, &s) in row.iter_mut().zip(&nodes) {
+                            let r2 = s.distance_squared(from);
+                            *out = K::value(r2, r2.sqrt());
+                        }
+                    }
+                });
+                Arch::new().dispatch(|| basis.analyse_pairs(table, &sorted))
+            })
+            .collect());
+        // A product of high degree in the target is felt with products of low degree in the source only.
+        let joint = JOINT * (degree * degree) as f64;
+        let cuts: Vec<usize> = (0..=BLOCKS)
+            .map(|b| {
+                sorted.partition_point(|&i| (squared(i) * BLOCKS) < b * degree * degree + usize::from(b == BLOCKS))
+            })
+            .collect();
+        let blocks = cuts
+            .windows(2)
+            .filter(|w| w[0] < w[1])
+            .map(|w| {
+                let least = squared(sorted[w[0]]) as f64;
+                (w[0], w[1], sorted.partition_point(|&i| squared(i) as f64 + least <= joint))
+            })
+            .collect();
+        Self { basis, kernel, matrices, blocks, rank }
+    }
+
+    /// The matrix of an offset, and for each product its name in that matrix and its sign.
+    fn of(&self, offset: IVec3) -> (&[f64], Vec<(usize, f64)>) {
+        let o = offset.to_array();
+        let mut axes = [0, 1, 2];
+        axes.sort_by_key(|&k| (-o[k].abs(), k));
+        let key = IVec3::from(axes.map(|k| o[k].abs()));
+        let which = canonical().iter().position(|&c| c == key).unwrap_or(0);
+        let p = self.basis.order;
+        let mut full = vec![0; p * p * p];
+        for (i, d) in self.basis.degrees.iter().enumerate() {
+            full[(d[0] * p + d[1]) * p + d[2]] = self.rank[i];
+        }
+        let name = |d: &[usize; 3]| {
+            let turned = axes.map(|k| d[k]);
+            // Odd polynomials change sign in a mirror.
+            let odd: usize = (0..3).filter(|&k| o[k] < 0).map(|k| d[k]).sum();
+            (full[(turned[0] * p + turned[1]) * p + turned[2]], if odd % 2 == 1 { -1.0 } else { 1.0 })
+        };
+        (&self.matrices[which], self.basis.degrees.iter().map(name).collect())
+    }
+}
+
+/// Offsets of cells that are apart while their parents are not, up to mirroring and turning.
+fn canonical() -> Vec<IVec3> {
+    let all = (2..4).flat_map(|a| (0..=a).flat_map(move |b| (0..=b).map(move |c| IVec3::new(a, b, c))));
+    all.collect()
+}
+
+/// Two trees, and how their cells meet; ready for any weights.
+pub(crate) struct Plan<'a> {
+    translations: &'a Translations,
+    frame: Frame,
+    sources: Octree,
+    /// None where the points are the centres themselves.
+    targets: Option<Octree>,
+    meetings: Meetings,
+}
+
+impl<'a> Plan<'a> {
+    /// Sums over `sources` at `targets`, or at the sources themselves.
+    pub(crate) fn new(translations: &'a Translations, sources: &[DVec3], targets: Option<&[DVec3]>) -> Self {
+        let frame = Frame::around(sources.iter().chain(targets.unwrap_or_default()));
+        // Larger leaves where expansions are long, so that both take about as much time.
+        let leaf = (translations.basis.len() / 3).clamp(48, 320);
+        let source_tree = Octree::new(sources, &frame, leaf);
+        let target_tree = targets.map(|t| Octree::new(t, &frame, leaf));
+        let meetings = Meetings::new(
+            target_tree.as_ref().unwrap_or(&source_tree),
+            &source_tree,
+            translations.basis.nodes.len().pow(3),
+        );
+        Self { translations, frame, sources: source_tree, targets: target_tree, meetings }
+    }
+
+    /// Σ wⱼ φ(|x − cⱼ|) at every target, in their own order.
+    pub(crate) fn sums(&self, weights: &[f64]) -> Vec<f64> {
+        with_kernel!(self.translations.kernel, K => self.sums_of::<K>(weights))
+    }
+
+    fn sums_of<K: Radial>(&self, weights: &[f64]) -> Vec<f64> {
+        let targets = self.targets.as_ref().unwrap_or(&self.sources);
+        let weights: Vec<f64> = self.sources.order.iter().map(|&i| weights[i as usize]).collect();
+        let outer = self.gather(&weights);
+        let mut inner = vec![0.0; targets.cells.len() * self.translations.basis.len()];
+        self.translate::<K>(&outer, &mut inner);
+        self.take_up::<K>(targets, &weights, &mut inner);
+        self.hand_down(targets, &mut inner);
+        let leaves: Vec<usize> = (0..targets.cells.len()).filter(|&c| targets.cells[c].is_leaf()).collect();
+        let found: Vec<Vec<f64>> =
+            leaves.par_iter().map(|&leaf| self.leaf_sums::<K>(targets, leaf, &weights, &outer, &inner)).collect();
+        let mut out = vec![0.0; targets.order.len()];
+        for (&leaf, values) in leaves.iter().zip(found) {
+            for (&i, v) in targets.order[targets.cells[leaf].start..].iter().zip(values) {
+                out[i as usize] = v;
+            }
+        }
+        out
+    }
+
+    /// Where a place is in a cell's own cube [-1, 1]³.
+    fn local(&self, tree: &Octree, cell: usize, at: usize) -> DVec3 {
+        let cell = &tree.cells[cell];
+        (tree.place(at) - self.frame.cell_centre(cell)) * (2.0 / self.frame.cell_width(cell.level))
+    }
+
+    /// Moments of every source cell, from the leaves up.
+    fn gather(&self, weights: &[f64]) -> Vec<f64> {
+        let (basis, tree) = (&self.translations.basis, &self.sources);
+        let q = basis.len();
+        let mut outer = vec![0.0; tree.cells.len() * q];
+        outer.par_chunks_mut(q).enumerate().filter(|(c, _)| tree.cells[*c].is_leaf()).for_each(|(c, out)| {
+            Arch::new().dispatch(|| {
+                for at in tree.cells[c].start..tree.cells[c].end {
+                    basis.gather_point(self.local(tree, c, at), weights[at], out);
+                }
+            });
+        });
+        for (first, last) in levels(tree).into_iter().rev() {
+            let (above, below) = outer.split_at_mut(last * q);
+            above[first * q..].par_chunks_mut(q).enumerate().for_each(|(i, parent)| {
+                Arch::new().dispatch(|| {
+                    for kid in tree.cells[first + i].kids() {
+                        basis.gather(&below[(kid - last) * q..][..q], octant(tree, kid), parent);
+                    }
+                });
+            });
+        }
+        outer
+    }
+
+    /// Grid to grid, one offset at a time; a target has at most one source at each.
+    fn translate<K: Radial>(&self, outer: &[f64], inner: &mut [f64]) {
+        let q = self.translations.basis.len();
+        for pairs in self.meetings.far.chunk_by(|a, b| a.0 == b.0) {
+            let (matrix, name) = self.translations.of(pairs[0].0);
+            let mut wanted = pairs.iter().peekable();
+            let columns: Vec<(&mut [f64], usize)> = inner
+                .chunks_mut(q)
+                .enumerate()
+                .filter_map(|(c, column)| wanted.next_if(|p| p.1 as usize == c).map(|p| (column, p.2 as usize)))
+                .collect();
+            let mut batches: Vec<Vec<(&mut [f64], usize)>> = vec![];
+            for pair in columns {
+                match batches.last_mut() {
+                    Some(batch) if batch.len() < BATCH => batch.push(pair),
+                    _ => batches.push(vec![pair]),
+                }
+            }
+            batches.into_par_iter().for_each(|batch| {
+                let mut from = vec![0.0; q * batch.len()];
+                for (column, (_, source)) in from.chunks_mut(q).zip(&batch) {
+                    let width = self.frame.cell_width(self.sources.cells[*source].level);
+                    let scale = K::value(0.25 * width * width, 0.5 * width);
+                    for (&(n, sign), v) in name.iter().zip(&outer[source * q..]) {
+                        column[n] = sign * v * scale;
+                    }
+                }
+                let mut to = vec![0.0; q * batch.len()];
+                for &(first, last, columns) in &self.translations.blocks {
+                    matmul(
+                        MatMut::from_column_major_slice_mut(&mut to, q, batch.len()).subrows_mut(first, last - first),
+                        Accum::Replace,
+                        MatRef::from_column_major_slice(matrix, q, q).submatrix(first, 0, last - first, columns),
+                        MatRef::from_column_major_slice(&from, q, batch.len()).subrows(0, columns),
+                        1.0,
+                        Par::Seq,
+                    );
+                }
+                for (column, (target, _)) in to.chunks(q).zip(batch) {
+                    for (t, &(n, sign)) in target.iter_mut().zip(&name) {
+                        *t += sign * column[n];
+                    }
+                }
+            });
+        }
+    }
+
+    /// The nodes of a cell, as flat arrays.
+    fn nodes(&self, tree: &Octree, cell: usize) -> [Vec<f64>; 3] {
+        let cell = &tree.cells[cell];
+        let places =
+            self.translations.basis.places(self.frame.cell_centre(cell), 0.5 * self.frame.cell_width(cell.level));
+        [0, 1, 2].map(|k| places.iter().map(|p| p[k]).collect())
+    }
+
+    /// Points of large leaves to the grids of small cells far from them.
+    fn take_up<K: Radial>(&self, targets: &Octree, weights: &[f64], inner: &mut [f64]) {
+        let q = self.translations.basis.len();
+        for pairs in self.meetings.up.chunk_by(|a, b| a.0 == b.0) {
+            let t = pairs[0].0 as usize;
+            let at = self.nodes(targets, t);
+            let mut values = vec![0.0; at[0].len()];
+            for &(_, s) in pairs {
+                let cell = &self.sources.cells[s as usize];
+                self.add_run::<K>(&at, cell.start..cell.end, weights, &mut values);
+            }
+            self.translations.basis.analyse(values, &mut inner[t * q..][..q]);
+        }
+    }
+
+    /// Adds the sum over a run of sorted sources at places given by flat arrays.
+    fn add_run<K: Radial>(&self, at: &[Vec<f64>; 3], run: std::ops::Range<usize>, weights: &[f64], out: &mut [f64]) {
+        let tree = &self.sources;
+        add_all::<K>(at, [&tree.x[run.clone()], &tree.y[run.clone()], &tree.z[run.clone()]], &weights[run], out);
+    }
+
+    /// Values on every target cell's grid, from the root down.
+    fn hand_down(&self, tree: &Octree, inner: &mut [f64]) {
+        let q = self.translations.basis.len();
+        let mut parent = vec![0; tree.cells.len()];
+        for (c, cell) in tree.cells.iter().enumerate() {
+            parent[cell.kids()].fill(c);
+        }
+        for (first, last) in levels(tree).into_iter().skip(1) {
+            let (above, below) = inner.split_at_mut(first * q);
+            below[..(last - first) * q].par_chunks_mut(q).enumerate().for_each(|(i, child)| {
+                let kid = first + i;
+                Arch::new().dispatch(|| {
+                    self.translations.basis.scatter(&above[parent[kid] * q..][..q], octant(tree, kid), child);
+                });
+            });
+        }
+    }
+
+    /// All sums at the points of one leaf.
+    fn leaf_sums<K: Radial>(
+        &self,
+        targets: &Octree,
+        leaf: usize,
+        weights: &[f64],
+        outer: &[f64],
+        inner: &[f64],
+    ) -> Vec<f64> {
+        let (basis, cell) = (&self.translations.basis, &targets.cells[leaf]);
+        let q = basis.len();
+        let values = &inner[leaf * q..][..q];
+        let mut out = vec![0.0; cell.len()];
+        Arch::new().dispatch(|| {
+            for (out, at) in out.iter_mut().zip(cell.start..) {
+                *out = basis.value(self.local(targets, leaf, at), values);
+            }
+        });
+        let at = [&targets.x, &targets.y, &targets.z].map(|a| a[cell.start..cell.end].to_vec());
+        for &(_, s) in of(&self.meetings.near, leaf) {
+            let source = &self.sources.cells[s as usize];
+            self.add_run::<K>(&at, source.start..source.end, weights, &mut out);
+        }
+        for &(_, s) in of(&self.meetings.down, leaf) {
+            let [x, y, z] = self.nodes(&self.sources, s as usize);
+            let weights = basis.node_weights(&outer[s as usize * q..][..q]);
+            add_all::<K>(&at, [&x, &y, &z], &weights, &mut out);
+        }
+        out
+    }
+}
+
+fn add_all<K: Radial>(at: &[Vec<f64>; 3], centres: [&[f64]; 3], weights: &[f64], out: &mut [f64]) {
+    Arch::new().dispatch(|| {
+        for (b, out) in out.chunks_mut(LANES).enumerate() {
+            let block =
+                std::array::from_fn(|k| std::array::from_fn(|l| at[k].get(b * LANES + l).copied().unwrap_or(0.0)));
+            let mut sum = [0.0; LANES];
+            add_block::<K>(centres, weights, &block, &mut sum);
+            out.iter_mut().zip(&sum).for_each(|(o, s)| *o += s);
+        }
+    });
+}
+
+/// The pairs of one target in a sorted list.
+fn of(pairs: &[(u32, u32)], target: usize) -> &[(u32, u32)] {
+    let from = pairs.partition_point(|p| (p.0 as usize) < target);
+    let to = pairs.partition_point(|p| (p.0 as usize) <= target);
+    &pairs[from..to]
+}
+
+/// First and last cell of every level.
+fn levels(tree: &Octree) -> Vec<(usize, usize)> {
+    let mut at = 0;
+    tree.cells
+        .chunk_by(|a, b| a.level == b.level)
+        .map(|run| {
+            at += run.len();
+            (at - run.len(), at)
+        })
+        .collect()
+}
+
+fn octant(tree: &Octree, cell: usize) -> [usize; 3] {
+    (tree.cells[cell].index & 1).to_array().map(|v| v as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sum::Sum;
+
+    fn spiral(n: usize) -> Vec<DVec3> {
+        let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+        (0..n)
+            .map(|i| {
+                let z = 1.0 - (2.0 * i as f64 + 1.0) / n as f64;
+                let (s, c) = (golden * i as f64).sin_cos();
+                let r = (1.0 - z * z).sqrt();
+                // Crowded towards one end, so that leaves of very different sizes meet.
+                DVec3::new(r * c, r * s, z) * (1.0 - z).powi(3) + DVec3::X * z
+            })
+            .collect()
+    }
+
+    /// The twin that adds everything directly.
+    #[test]
+    fn far_sums_are_the_direct_sums() {
+        let (sources, targets) = (spiral(5000), spiral(3000).iter().map(|p| p * 0.9).collect::<Vec<_>>());
+        let weights: Vec<f64> = (0..sources.len()).map(|i| ((i * 7919) % 13) as f64 - 6.0).collect();
+        for kernel in [Kernel::Biharmonic, Kernel::Triharmonic] {
+            let mut before = f64::INFINITY;
+            for order in [3, 5, 7] {
+                let translations = Translations::new(kernel, order);
+                for (plan, at) in [
+                    (Plan::new(&translations, &sources, None), &sources),
+                    (Plan::new(&translations, &sources, Some(&targets)), &targets),
+                ] {
+                    let mut direct = vec![0.0; at.len()];
+                    let mut sum = Sum::new(&sources, 0);
+                    sum.set_weights(&weights);
+                    sum.values(kernel, at, &mut direct);
+                    let scale = direct.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
+                    let error =
+                        plan.sums(&weights).iter().zip(&direct).fold(0.0, |a: f64, (f, d)| a.max((f - d).abs()))
+                            / scale;
+                    assert!(error < before, "{kernel:?} {order}: {error:e}");
+                    if at.len() == targets.len() {
+                        before = error / 10.0;
+                    }
+                }
+            }
+            assert!(before < 1e-6, "{before:e}");
+        }
+    }
+}
