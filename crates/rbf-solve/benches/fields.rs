@@ -44,7 +44,7 @@ fn evaluations(c: &mut Criterion) {
     let mut group = c.benchmark_group("rbf-solve/evaluate 100 000 points");
     group.sample_size(10);
     let points: Vec<DVec3> = (0..100_000)
-        .map(|i| DVec3::new((i % 50) as f64, (i / 50 % 50) as f64, (i / 2500) as f64) / 20.0 - 1.2)
+        .map(|i| DVec3::new(f64::from(i % 50), f64::from(i / 50 % 50), f64::from(i / 2500)) / 20.0 - 1.2)
         .collect();
     let mut values = vec![0.0; points.len()];
     let mut gradients = vec![DVec3::ZERO; points.len()];

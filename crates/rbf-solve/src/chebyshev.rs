@@ -164,7 +164,7 @@ impl Basis {
 
     /// Coefficients of a function of two points, `kernel[target node * order³ + source node]`, in products of both, sorted by `sorted`.
     #[inline(always)]
-    pub(crate) fn analyse_pairs(&self, kernel: Vec<f64>, sorted: &[usize]) -> Vec<f64> {
+    pub(crate) fn analyse_pairs(&self, kernel: &[f64], sorted: &[usize]) -> Vec<f64> {
         let (q, full) = (self.len(), self.order * self.order * self.order);
         // First the sources of every target node, then the targets of every source product.
         let mut half = vec![0.0; q * full];

@@ -57,7 +57,7 @@ impl Translations {
                         }
                     }
                 });
-                Arch::new().dispatch(|| basis.analyse_pairs(table, &sorted))
+                Arch::new().dispatch(|| basis.analyse_pairs(&table, &sorted))
             })
             .collect());
         // A product of high degree in the target is felt with products of low degree in the source only.
@@ -170,8 +170,9 @@ impl<'a> Plan<'a> {
         let mut outer = vec![0.0; tree.cells.len() * q];
         outer.par_chunks_mut(q).enumerate().filter(|(c, _)| tree.cells[*c].is_leaf()).for_each(|(c, out)| {
             Arch::new().dispatch(|| {
-                for at in tree.cells[c].start..tree.cells[c].end {
-                    basis.gather_point(self.local(tree, c, at), weights[at], out);
+                let cell = &tree.cells[c];
+                for (at, &weight) in (cell.start..cell.end).zip(&weights[cell.start..cell.end]) {
+                    basis.gather_point(self.local(tree, c, at), weight, out);
                 }
             });
         });

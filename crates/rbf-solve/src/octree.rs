@@ -47,7 +47,7 @@ impl Frame {
     }
 
     pub(crate) fn cell_width(&self, level: u32) -> f64 {
-        self.width * 0.5f64.powi(level as i32)
+        self.width / f64::from(1u32 << level)
     }
 
     pub(crate) fn cell_centre(&self, cell: &Cell) -> DVec3 {

@@ -108,7 +108,9 @@ impl<'a, K: Radial> Reduced<'a, K> {
                 // A point that those before it determine to working precision is passed over.
                 let kept = column[0] > LOST * whole;
                 let scale = if kept { 1.0 / column[0].sqrt() } else { 0.0 };
-                column.iter_mut().for_each(|v| *v *= scale);
+                for v in column.iter_mut() {
+                    *v *= scale;
+                }
                 if c == k {
                     lost = if kept { column[0] } else { (LOST * whole.abs()).sqrt() };
                 }
