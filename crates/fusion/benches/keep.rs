@@ -36,7 +36,8 @@ fn teapot(near: f64, far: f64) -> (Mesh, BlendCurve) {
         a.distance(b) * (1e-3 + away(a) + away(a.midpoint(b)))
     };
     let paths = (0..3).map(|k| shortest_path(&mesh, picks[k], picks[(k + 1) % 3], cost).expect("a path"));
-    let curve = BlendCurve { halfedges: paths.collect::<Vec<_>>().concat() };
+    let cycle: Vec<VertexId> = paths.collect::<Vec<_>>().concat().into_iter().map(|h| mesh.tail(h)).collect();
+    let curve = BlendCurve::from_vertices(&mesh, &cycle).expect("the paths run along edges");
     (mesh, curve)
 }
 
