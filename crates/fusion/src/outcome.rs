@@ -83,6 +83,7 @@ pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Re
     *worst = worst.max(blended.residual);
     report.figures.insert("radius".into(), params.radius);
     *report.figures.entry("strips".into()).or_default() += blended.strips as f64;
+    *report.figures.entry("corners".into()).or_default() += blended.corners as f64;
     let smallest = blended.shrunk.iter().map(|s| s.1).fold(params.radius, f64::min);
     for (name, value) in [("full_share", blended.full_share), ("smallest_radius", smallest)] {
         let figure = report.figures.entry(name.into()).or_insert(value);
@@ -111,6 +112,7 @@ mod tests {
             origins: Origins::default(),
             first_blend_face: FaceId(0),
             strips: 1,
+            corners: 0,
             residual: 1e-12,
             shrunk: shrunk.to_vec(),
             full_share,

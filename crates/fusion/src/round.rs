@@ -1,10 +1,10 @@
 //! Rounds the feature curves of one mesh.
 
-use crate::features::{self, FeatureCurve, feature_curves, nearest_curve};
+use crate::features::{self, feature_curves, nearest_curve};
 use crate::outcome::{Outcome, account, finish, surviving};
 use crate::{Counts, Error, Report, blend};
 use glam::DVec3;
-use mesh_core::{Connected, Positions, TriMesh, VertexId, Watch};
+use mesh_core::{Connected, TriMesh, Watch};
 use mesh_io::{Format, Model};
 use spine::BlendCurve;
 
@@ -21,7 +21,7 @@ pub struct Params {
     pub format: Format,
 }
 
-/// Blends the chosen feature curves of a solid, all at once. They must be closed.
+/// Blends the chosen feature curves of a solid, all at once. Open ones meet in corner patches, stop or run out.
 ///
 /// # Errors
 /// [`Error`]; a radius that does not fit comes with a place and a radius that does.
@@ -53,20 +53,6 @@ fn choose(mesh: &Connected<TriMesh>, params: &Params) -> Result<Vec<BlendCurve>,
     }
     chosen.sort_unstable();
     chosen.dedup();
-    let closed = |id: usize| {
-        let curve: &FeatureCurve = &all[id];
-        if curve.closed {
-            return Ok(BlendCurve { halfedges: curve.halfedges.clone() });
-        }
-        let ends: Vec<VertexId> = curve.vertices(mesh);
-        let at = ends.first().map(|&v| mesh.position(v));
-        let place = at.map_or(String::new(), |p| format!(", which begins at {p},"));
-        Err(Error::NoCurve(
-            format!(
-                "feature curve {id}{place} is open, and only closed curves can be blended; choose others with --near (`features` lists them)"
-            ),
-            at,
-        ))
-    };
-    chosen.into_iter().map(closed).collect()
+    let curve = |id: usize| BlendCurve { halfedges: all[id].halfedges.clone(), closed: all[id].closed };
+    Ok(chosen.into_iter().map(curve).collect())
 }

@@ -1,17 +1,19 @@
-//! Blend curves: closed chains of mesh edges with a left and a right side.
+//! Blend curves: chains of mesh edges with a left and a right side.
 
 use crate::Error;
 use glam::DVec3;
 use mesh_core::{Adjacency, Faces, HalfedgeId, Positions, VertexId};
 
-/// A closed chain of mesh edges along which a ball is to roll.
+/// A chain of mesh edges along which a ball is to roll.
 ///
 /// Walking along the halfedges with the surface normal up, their own faces lie on the left and their twins' faces on
 /// the right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlendCurve {
-    /// The chain, head to tail; the last one's head is the first one's tail.
+    /// The chain, head to tail.
     pub halfedges: Vec<HalfedgeId>,
+    /// Whether the last one's head is the first one's tail, and the ball rolls round.
+    pub closed: bool,
 }
 
 /// Which side of the surface the ball rolls on.
@@ -38,17 +40,24 @@ impl BlendCurve {
                         .ok_or_else(|| Error::NotAnEdge { from: a, to: b, at: mesh.position(a) })
                 })
                 .collect::<Result<_, _>>()?;
-        Ok(Self { halfedges })
-    }
-
-    /// The points of the chain, the first not repeated.
-    pub fn points<M: Faces + Positions>(&self, mesh: &M) -> Vec<DVec3> {
-        self.halfedges.iter().map(|&h| mesh.position(mesh.tail(h))).collect()
+        Ok(Self { halfedges, closed: true })
     }
 
     /// Length in model units.
     pub fn length<M: Faces + Positions>(&self, mesh: &M) -> f64 {
         self.halfedges.iter().map(|&h| mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h)))).sum()
+    }
+
+    /// Both ends of an open curve, each with the unit direction in which the curve leaves it; none of a closed one.
+    pub fn ends<M: Faces + Positions>(&self, mesh: &M) -> Vec<(DVec3, DVec3)> {
+        let (Some(&first), Some(&last), false) = (self.halfedges.first(), self.halfedges.last(), self.closed) else {
+            return vec![];
+        };
+        let end = |at: VertexId, before: VertexId| {
+            let at = mesh.position(at);
+            (at, (at - mesh.position(before)).normalize_or_zero())
+        };
+        vec![end(mesh.tail(first), mesh.head(first)), end(mesh.head(last), mesh.tail(last))]
     }
 
     /// Ridge or valley. The signs of the edges are weighed by their lengths, since the slivers of a boolean seam have

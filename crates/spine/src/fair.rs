@@ -58,6 +58,8 @@ pub(crate) struct Fairing<'a> {
     pub gap: f64,
     /// Where the kernel is wider.
     pub softenings: &'a [Softening],
+    /// Whether the last ball is next to the first.
+    pub closed: bool,
 }
 
 /// Fills jumps, smooths, projects. Also gives the largest residual of the balls seated on the way.
@@ -66,13 +68,13 @@ pub(crate) fn fair<M: Adjacency + Positions + Sync>(
     patches: &[Patch; 2],
     radius: &RadiusField,
     contacts: &[Contact],
-    Fairing { fairness, gap, softenings }: Fairing<'_>,
+    Fairing { fairness, gap, softenings, closed }: Fairing<'_>,
 ) -> (Vec<Sample>, f64) {
-    let (raw, residual) = fill_jumps(mesh, patches, radius, contacts, gap);
-    let (metric, total) = arc_lengths(&raw);
+    let (raw, residual) = fill_jumps(mesh, patches, radius, contacts, closed, gap);
+    let metric = Metric::of(&raw, closed);
     let points: [Vec<DVec3>; 2] = [0, 1].map(|side| raw.iter().map(|s| s.feet[side].point).collect());
     let centers: Vec<DVec3> = raw.iter().map(|s| s.center).collect();
-    let sigmas = [0, 1].map(|side| fairness * facet_length(mesh, &raw, side));
+    let sigmas = [0, 1].map(|side| fairness * facet_length(mesh, &raw, closed, side));
     let fair = (0..raw.len())
         .into_par_iter()
         .map(|i| {
@@ -82,14 +84,14 @@ pub(crate) fn fair<M: Adjacency + Positions + Sync>(
                 .map(|s| s.extra * (1.0 - raw[i].center.distance_squared(s.at) / (s.extent * s.extent)).max(0.0))
                 .sum();
             if extra > 0.0 {
-                sample.center = mean(&centers, &metric, total, i, extra.min(sample.radius));
+                sample.center = metric.mean(&centers, i, extra.min(sample.radius));
             }
             for side in 0..2 {
                 let sigma = sigmas[side].min(0.5 * sample.radius) + extra.min(sample.radius);
                 if sigma <= 0.0 {
                     continue;
                 }
-                let smooth = mean(&points[side], &metric, total, i, sigma);
+                let smooth = metric.mean(&points[side], i, sigma);
                 if let Some(foot) = patches[side].closest(mesh, smooth) {
                     sample.feet[side] = foot;
                 }
@@ -104,14 +106,13 @@ pub(crate) fn fair<M: Adjacency + Positions + Sync>(
 ///
 /// Turns under half a degree disturb nothing, and those over 30 degrees are creases, where feet belong on either side;
 /// zero where there are no others.
-fn facet_length<M: Adjacency + Positions>(mesh: &M, samples: &[Sample], side: usize) -> f64 {
+fn facet_length<M: Adjacency + Positions>(mesh: &M, samples: &[Sample], closed: bool, side: usize) -> f64 {
     let normal = |s: &Sample| {
         let [a, b, c] = mesh.corners(s.feet[side].face).map(|v| mesh.position(v));
         (b - a).cross(c - a).normalize_or_zero()
     };
     let (mut length, mut turns) = (0.0, 0u32);
-    for (i, here) in samples.iter().enumerate() {
-        let next = &samples[(i + 1) % samples.len()];
+    for (here, next) in pairs(samples, closed) {
         length += here.feet[side].point.distance(next.feet[side].point);
         let turn = normal(here).angle_between(normal(next)).to_degrees();
         turns += u32::from((0.5..30.0).contains(&turn));
@@ -126,6 +127,7 @@ fn fill_jumps<M: Adjacency + Positions>(
     patches: &[Patch; 2],
     radius: &RadiusField,
     contacts: &[Contact],
+    closed: bool,
     gap: f64,
 ) -> (Vec<Sample>, f64) {
     let mut residual = 0.0f64;
@@ -143,7 +145,7 @@ fn fill_jumps<M: Adjacency + Positions>(
         Some(Sample { center: ball.center, radius: ball.radius, feet })
     };
     let samples: Vec<Sample> = contacts.iter().copied().map(Sample::from).collect();
-    let filled = subdivide(&samples, gap, between);
+    let filled = subdivide(&samples, closed, gap, between);
     (filled, residual)
 }
 
@@ -152,26 +154,36 @@ pub(crate) fn fill_gaps<M: Adjacency + Positions>(
     mesh: &M,
     patches: &[Patch; 2],
     samples: &[Sample],
+    closed: bool,
     gap: f64,
 ) -> Vec<Sample> {
-    subdivide(samples, gap, |here, next, t| walk(mesh, patches, here, next, t))
+    subdivide(samples, closed, gap, |here, next, t| walk(mesh, patches, here, next, t))
 }
 
 /// Puts what `between` makes into every stretch longer than `gap`.
 fn subdivide(
     samples: &[Sample],
+    closed: bool,
     gap: f64,
     mut between: impl FnMut(&Sample, &Sample, f64) -> Option<Sample>,
 ) -> Vec<Sample> {
     let mut filled = Vec::with_capacity(samples.len());
-    for (i, here) in samples.iter().enumerate() {
-        let next = &samples[(i + 1) % samples.len()];
+    for (here, next) in pairs(samples, closed) {
         filled.push(*here);
         // A jump is never longer than a few diameters, so the count is bounded.
         let pieces = (here.advance(next) / gap).ceil().clamp(1.0, 256.0) as u32;
         filled.extend((1..pieces).filter_map(|k| between(here, next, f64::from(k) / f64::from(pieces))));
     }
+    if !closed {
+        filled.extend(samples.last());
+    }
     filled
+}
+
+/// Each sample with the next; of a closed chain also the last with the first.
+pub(crate) fn pairs(samples: &[Sample], closed: bool) -> impl Iterator<Item = (&Sample, &Sample)> {
+    let wrap = if closed { samples.last().zip(samples.first()) } else { None };
+    samples.windows(2).map(|w| (&w[0], &w[1])).chain(wrap)
 }
 
 /// The ball between two, its feet on the patches next to the straight line between theirs.
@@ -190,42 +202,64 @@ fn walk<M: Adjacency + Positions>(
     })
 }
 
-/// Arc length at each sample and in all, measured on whichever of centre and feet moves most.
-fn arc_lengths(samples: &[Sample]) -> (Vec<f64>, f64) {
-    let mut total = 0.0;
-    let starts = (0..samples.len())
-        .map(|i| {
-            let (a, b) = (&samples[i], &samples[(i + 1) % samples.len()]);
-            let start = total;
-            total +=
-                (0..2).map(|s| a.feet[s].point.distance(b.feet[s].point)).fold(a.center.distance(b.center), f64::max);
-            start
-        })
-        .collect();
-    (starts, total)
+/// Arc lengths along a rail, measured on whichever of centre and feet moves most.
+struct Metric {
+    /// At each sample.
+    at: Vec<f64>,
+    /// In all, the way from the last sample to the first included where the rail is closed.
+    total: f64,
+    closed: bool,
 }
 
-/// Gaussian mean of `points` around `i`, each weighted by the stretch of curve it stands for.
-fn mean(points: &[DVec3], at: &[f64], total: f64, i: usize, sigma: f64) -> DVec3 {
-    let n = points.len();
-    let reach = (3.0 * sigma).min(0.4 * total);
-    let stretch = |j: usize| {
-        let (before, after) = (at[(j + n - 1) % n], at[(j + 1) % n]);
-        (after - before).rem_euclid(total).max(1e-6 * total / n as f64)
-    };
-    let (mut sum, mut weight) = (stretch(i) * points[i], stretch(i));
-    for direction in [1, n - 1] {
-        let mut j = i;
-        for _ in 1..n {
-            j = (j + direction) % n;
-            let d = if direction == 1 { at[j] - at[i] } else { at[i] - at[j] }.rem_euclid(total);
-            if d > reach {
-                break;
-            }
-            let w = stretch(j) * (-0.5 * (d / sigma) * (d / sigma)).exp();
-            sum += w * points[j];
-            weight += w;
+impl Metric {
+    fn of(samples: &[Sample], closed: bool) -> Self {
+        let (mut at, mut total) = (Vec::with_capacity(samples.len()), 0.0);
+        for (here, next) in pairs(samples, closed) {
+            at.push(total);
+            total += here.advance(next);
         }
+        if !closed {
+            at.push(total);
+        }
+        Self { at, total, closed }
     }
-    sum / weight
+
+    /// Distance from sample `i` to sample `j` going forwards.
+    fn ahead(&self, i: usize, j: usize) -> f64 {
+        if self.closed { (self.at[j] - self.at[i]).rem_euclid(self.total) } else { self.at[j] - self.at[i] }
+    }
+
+    /// Gaussian mean of `points` around `i`, each weighted by the stretch of curve it stands for. Near the ends of an
+    /// open rail the kernel is cut on both sides alike, so that the ends stay where they are.
+    fn mean(&self, points: &[DVec3], i: usize, sigma: f64) -> DVec3 {
+        let n = points.len();
+        let to_end = if self.closed { f64::INFINITY } else { self.at[i].min(self.total - self.at[i]) };
+        let reach = (3.0 * sigma).min(0.4 * self.total).min(to_end * (1.0 + 1e-9));
+        let least = 1e-6 * self.total / n as f64;
+        let stretch = |j: usize| {
+            let (before, after) = if self.closed { ((j + n - 1) % n, (j + 1) % n) } else { (j.saturating_sub(1), (j + 1).min(n - 1)) };
+            self.ahead(before, after).max(least)
+        };
+        let (mut sum, mut weight) = (stretch(i) * points[i], stretch(i));
+        for forwards in [true, false] {
+            let mut j = i;
+            for _ in 1..n {
+                j = match (forwards, self.closed) {
+                    (true, true) => (j + 1) % n,
+                    (false, true) => (j + n - 1) % n,
+                    (true, false) if j + 1 < n => j + 1,
+                    (false, false) if j > 0 => j - 1,
+                    _ => break,
+                };
+                let d = if forwards { self.ahead(i, j) } else { self.ahead(j, i) };
+                if d > reach {
+                    break;
+                }
+                let w = stretch(j) * (-0.5 * (d / sigma) * (d / sigma)).exp();
+                sum += w * points[j];
+                weight += w;
+            }
+        }
+        sum / weight
+    }
 }

@@ -15,7 +15,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `curve.rs` | blend curves: closed chains of edges, ridge or valley |
+//! | `curve.rs` | blend curves: chains of edges, ridge or valley |
 //! | `radius.rs` | the ball's radius as a field in space |
 //! | `patch.rs` | the two sides of a curve, flooded to α·r |
 //! | `contact.rs` | one ball at rest against both, by Newton on closest points |
@@ -44,6 +44,7 @@ use glam::DVec3;
 use march::Footing;
 use mesh_core::{Adjacency, EdgeId, HalfedgeId, Positions, VertexId};
 use std::collections::HashSet;
+use std::sync::Arc;
 
 /// How the ball rolls.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +63,8 @@ pub struct Params {
     pub softenings: Vec<Softening>,
     /// What finds the spine.
     pub solver: Solver,
+    /// Edges that no patch floods across, beside the curves themselves: creases at which an open curve ends.
+    pub walls: Vec<EdgeId>,
 }
 
 /// Which solver finds the spine.
@@ -85,15 +88,19 @@ impl Params {
             fairness: 0.6,
             softenings: Vec::new(),
             solver: Solver::Contact,
+            walls: Vec::new(),
         }
     }
 }
 
-/// A ball's way along a closed blend curve.
-#[derive(Clone, Debug)]
+/// A ball's way along a blend curve.
+#[derive(Clone)]
 pub struct Rail {
-    /// Balls in order, the last next to the first, running the same way as the blend curve.
+    /// Balls in order, running the same way as the blend curve. Along a closed one the last is next to the first; along
+    /// an open one they begin and end past its ends, as far as the patches carry the ball.
     pub samples: Vec<Sample>,
+    /// Whether the ball comes back to where it began.
+    pub closed: bool,
     /// Ridge or valley.
     pub convexity: Convexity,
     /// Largest | distance from a traced centre to a patch − radius |, in model units; at most 1e-9 of the radius from
@@ -101,8 +108,8 @@ pub struct Rail {
     pub residual: f64,
     /// Reach of the base patches that was needed, as a multiple of the radius.
     pub alpha: f64,
-    /// Faces of the left and the right base patch.
-    pub patch_faces: [usize; 2],
+    /// The left and the right base patch.
+    pub patches: Arc<[Patch; 2]>,
 }
 
 /// Why a ball could not be rolled. Every variant names a place in model units.
@@ -233,14 +240,22 @@ pub fn roll<M: Adjacency + Positions + Sync>(
         return Err(Error::BadRadius { radius: radius.base });
     }
     let convexity = curve.convexity(mesh)?;
-    let barriers: HashSet<EdgeId> = all_curves.iter().flat_map(|c| &c.halfedges).map(|&h| mesh.edge(h)).collect();
+    let edges = all_curves.iter().flat_map(|c| &c.halfedges).map(|&h| mesh.edge(h));
+    let barriers: HashSet<EdgeId> = edges.chain(params.walls.iter().copied()).collect();
+    let own: HashSet<EdgeId> = curve.halfedges.iter().map(|&h| mesh.edge(h)).collect();
+    let ends = curve.ends(mesh);
     let mut alpha = params.alpha.max(wedge_alpha(mesh, curve));
     loop {
         let patch = |side| Patch::flood(mesh, curve, side, &barriers, alpha * radius.base, 0.5 * radius.base);
         let patches = [patch(Side::Left)?, patch(Side::Right)?];
         let footing = |c: &Contact| {
+            let at_end = |e| !curve.closed && barriers.contains(&e) && !own.contains(&e);
+            let on_curve = |e| barriers.contains(&e);
+            let past = ends.iter().map(|(at, out)| (c.center - *at).dot(*out)).fold(f64::NEG_INFINITY, f64::max);
             let at_rim = |s: usize| on_rim(mesh, &patches[s], &barriers, &c.feet[s]);
-            if (0..2).any(|s| tips(mesh, &barriers, convexity, c, s)) {
+            if past > alpha * radius.base || (0..2).any(|s| on_edge(mesh, &c.feet[s], at_end) || past > 0.0 && at_rim(s)) {
+                Footing::Over
+            } else if (0..2).any(|s| on_edge(mesh, &c.feet[s], on_curve) && tips(mesh, convexity, c, s)) {
                 Footing::Tipping
             } else if alpha < MAX_ALPHA && (0..2).any(at_rim) {
                 Footing::AtRim
@@ -255,25 +270,27 @@ pub fn roll<M: Adjacency + Positions + Sync>(
                 offset::trace(mesh, curve, convexity, base, radius, params.step, offset)?
             }
         };
-        let contacts = match traced {
-            march::Trace::Closed(contacts) => contacts,
+        let (contacts, closed) = match traced {
+            march::Trace::Closed(contacts) => (contacts, true),
+            march::Trace::Open(contacts) => (contacts, false),
             march::Trace::RanOff => {
                 alpha *= 1.6;
                 continue;
             }
         };
         let gap = 1.5 * params.step;
-        let fairing = fair::Fairing { fairness: params.fairness, gap, softenings: &params.softenings };
+        let fairing = fair::Fairing { fairness: params.fairness, gap, softenings: &params.softenings, closed };
         let (samples, filled) = fair::fair(mesh, &patches, radius, &contacts, fairing);
-        let samples = regress::regress(&samples, convexity, 3.0 * radius.base);
-        let samples = fair::fill_gaps(mesh, &patches, &samples, gap);
+        let samples = regress::regress(&samples, closed, convexity, 3.0 * radius.base);
+        let samples = fair::fill_gaps(mesh, &patches, &samples, closed, gap);
         let residual = contacts.iter().map(|c| c.residual).fold(filled, f64::max);
         return Ok(Rail {
             samples,
+            closed,
             convexity,
             residual,
             alpha,
-            patch_faces: patches.each_ref().map(|p| p.faces.len()),
+            patches: Arc::new(patches),
         });
     }
 }
@@ -307,20 +324,18 @@ fn on_rim<M: Adjacency>(mesh: &M, patch: &Patch, barriers: &HashSet<EdgeId>, foo
     })
 }
 
-/// Whether a foot lies on a blend curve while the ball has left the side its patch faces.
-fn tips<M: Adjacency + Positions>(
-    mesh: &M,
-    barriers: &HashSet<EdgeId>,
-    convexity: Convexity,
-    ball: &Contact,
-    side: usize,
-) -> bool {
+/// Whether a foot lies on an edge of a kind.
+fn on_edge<M: Adjacency>(mesh: &M, foot: &mesh_query::ClosestPoint, kind: impl Fn(EdgeId) -> bool) -> bool {
+    (0..3).any(|corner| {
+        foot.barycentric[(corner + 2) % 3] == 0.0 && kind(mesh.edge(HalfedgeId::new(foot.face, corner)))
+    })
+}
+
+/// Whether the ball has left the side that a patch faces: with its foot on a blend curve, it tips over that.
+fn tips<M: Adjacency + Positions>(mesh: &M, convexity: Convexity, ball: &Contact, side: usize) -> bool {
     let foot = &ball.feet[side];
-    let on_curve = (0..3).any(|corner| {
-        foot.barycentric[(corner + 2) % 3] == 0.0 && barriers.contains(&mesh.edge(HalfedgeId::new(foot.face, corner)))
-    });
     let facing = curve::face_normal(mesh, HalfedgeId::new(foot.face, 0)).dot(ball.normals()[side]);
-    on_curve && TIPPING > if convexity == Convexity::Concave { facing } else { -facing }
+    TIPPING > if convexity == Convexity::Concave { facing } else { -facing }
 }
 
 /// Cosine of the angle between a patch's normal and the ball at which a ball that touches only the patch's edge is

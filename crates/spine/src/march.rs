@@ -17,6 +17,8 @@ use mesh_core::{Adjacency, HalfedgeId, Positions};
 pub(crate) enum Trace {
     /// Balls along the closed spine, in order, the last next to the first.
     Closed(Vec<Contact>),
+    /// Balls along an open spine, from beyond the curve's beginning to beyond its end as far as the patches carry them.
+    Open(Vec<Contact>),
     /// A foot came to where a patch was cut off: it is to be flooded farther.
     RanOff,
 }
@@ -31,6 +33,8 @@ pub(crate) enum Footing {
     /// At a blend curve with the ball already beyond the side of its patch: rolling on would take it round the curve
     /// into the solid.
     Tipping,
+    /// On an edge where the patches of an open curve end: the ball is past the curve's own end.
+    Over,
 }
 
 /// Rolls a ball along `curve` with steps of at most `step`, looking at every ball's `footing`.
@@ -49,6 +53,32 @@ pub(crate) fn trace<M: Adjacency + Positions>(
 ) -> Result<Trace, Error> {
     let (start, sign) = first_contact(mesh, curve, convexity, patches, radius)?;
     let limit = 8.0 * curve.length(mesh) + 64.0 * radius.base;
+    if !curve.closed {
+        let mut contacts = vec![];
+        for sign in [-sign, sign] {
+            contacts.reverse();
+            let mut here = *contacts.last().unwrap_or(&start);
+            if contacts.is_empty() {
+                contacts.push(start);
+            }
+            let (mut travelled, mut stride) = (0.0, step);
+            // Past the curve's end there is nothing to demand, so whatever stops the ball ends the trace; that it came
+            // far enough is seen where the ends are made.
+            while travelled < limit && (contacts.len() as f64) < 8.0 * limit / step {
+                let Some(next) = stride_from(mesh, patches, radius, &here, sign, &mut stride) else { break };
+                match footing(&next) {
+                    Footing::Firm => {}
+                    Footing::AtRim => return Ok(Trace::RanOff),
+                    Footing::Tipping | Footing::Over => break,
+                }
+                travelled += next.center.distance(here.center);
+                contacts.push(next);
+                here = next;
+                stride = (1.6 * stride).min(step);
+            }
+        }
+        return Ok(Trace::Open(contacts));
+    }
     let mut contacts = vec![start];
     let (mut here, mut travelled, mut stride) = (start, 0.0, step);
     while travelled < limit {
@@ -56,7 +86,7 @@ pub(crate) fn trace<M: Adjacency + Positions>(
         match footing(&next) {
             Footing::Firm => {}
             Footing::AtRim => return Ok(Trace::RanOff),
-            Footing::Tipping => return Err(stuck(&next, radius)),
+            Footing::Tipping | Footing::Over => return Err(stuck(&next, radius)),
         }
         let chord = next.center - here.center;
         if travelled > 2.0 * step && closes(&start, &here, chord, step) {

@@ -105,6 +105,7 @@ impl Marks {
             let pieces = (a.distance(b) / spacing).ceil().clamp(1.0, 4096.0) as u32;
             points.extend((0..pieces).map(|k| a.lerp(b, f64::from(k) / f64::from(pieces))));
         }
+        points.extend(curve.ends(mesh).last().map(|end| end.0));
         Self { points, first_of_edge }
     }
 

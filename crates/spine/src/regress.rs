@@ -13,7 +13,7 @@ const ROWS: usize = 5;
 
 /// Samples without those whose profiles fall back; the cells that bridge the gaps advance at every row. Gaps longer
 /// than `longest` are left as they are, for the caller to make the ball smaller there.
-pub(crate) fn regress(samples: &[Sample], convexity: Convexity, longest: f64) -> Vec<Sample> {
+pub(crate) fn regress(samples: &[Sample], closed: bool, convexity: Convexity, longest: f64) -> Vec<Sample> {
     let n = samples.len();
     let rows: Vec<[DVec3; ROWS]> = samples.iter().map(profile).collect();
     let advances = |i: usize, j: usize| {
@@ -24,12 +24,12 @@ pub(crate) fn regress(samples: &[Sample], convexity: Convexity, longest: f64) ->
         cell_advances(&rows[i], &rows[j], samples[i].center.midpoint(samples[j].center), side)
     };
     let mut dropped = vec![false; n];
-    for i in 0..n {
+    for i in 0..if closed { n } else { n.saturating_sub(1) } {
         let next = (i + 1) % n;
         if dropped[i] || dropped[next] || advances(i, next) {
             continue;
         }
-        if let Some((back, ahead)) = bridge(samples, i, longest, |a, b| !dropped[a] && !dropped[b] && advances(a, b)) {
+        if let Some((back, ahead)) = bridge(samples, closed, i, longest, |a, b| !dropped[a] && !dropped[b] && advances(a, b)) {
             for k in 1..=back + ahead {
                 dropped[(i + n - back + k) % n] = true;
             }
@@ -41,6 +41,7 @@ pub(crate) fn regress(samples: &[Sample], convexity: Convexity, longest: f64) ->
 /// The shortest bridge over the cell from `i`: how far to step back before it and ahead after it.
 fn bridge(
     samples: &[Sample],
+    closed: bool,
     i: usize,
     longest: f64,
     advances: impl Fn(usize, usize) -> bool,
@@ -52,6 +53,9 @@ fn bridge(
         for k in 0..=steps {
             let back = if k % 2 == 0 { steps / 2 + k / 2 } else { steps / 2 - k.div_ceil(2).min(steps / 2) };
             let Some(ahead) = steps.checked_sub(back) else { continue };
+            if !closed && (back > i || i + 1 + ahead >= n) {
+                continue;
+            }
             let (a, b) = ((i + n - back) % n, (i + 1 + ahead) % n);
             if samples[a].center.distance(samples[b].center) > longest {
                 continue;

@@ -1,23 +1,40 @@
-//! Rolling-ball blends of closed curves: swept strips sewn in between exactly cut linkages.
+//! Rolling-ball blends: swept strips and corner patches sewn in between exactly cut linkages.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `mod.rs` | the stages, and the loop that makes the ball smaller where it does not fit |
+//! | `network.rs` | the nodes at which open curves meet or end |
+//! | `ending.rs` | rails cut to length there: set back, run out, or stopped at the surface ahead |
+//! | `corner.rs` | how far curves that meet are set back, and the ball that touches all sides |
+//! | `stretch.rs` | a rail cut to length |
 //! | `linkage.rs` | linkage curves on the surface, cut into the mesh |
 //! | `strip.rs` | the swept surface as triangles |
+//! | `fill.rs` | corner patches: their rims, and what they are tangent to |
+//! | `plate.rs` | a disc of triangles bent onto a ball or into a thin plate |
 //! | `sew.rs` | removal of what lies between, sewing |
 //! | `keep/` | the other surface: vertices slid onto the sweep, connectivity kept |
 //! | `trouble.rs` | what a stage refuses, and where |
 
+mod corner;
+mod ending;
+mod fill;
 pub mod keep;
 mod linkage;
+mod network;
+mod plate;
 mod sew;
+mod stretch;
 mod strip;
 mod trouble;
 
 use glam::DVec3;
+use ending::Ends;
+use fill::fill;
 use linkage::cut_linkages;
-use mesh_core::{Adjacency, Cancelled, Connected, FaceId, Faces, NotManifold, Origins, Positions, TriMesh, Watch};
+use mesh_core::{
+    Adjacency, Cancelled, Connected, FaceId, Faces, NotManifold, Origins, Positions, TriMesh, VertexId, Watch,
+};
+use network::{Kind, Network};
 use profile_nurbs::Profile;
 use rayon::prelude::*;
 use sew::{between, sew};
@@ -99,6 +116,8 @@ pub struct Blended {
     pub first_blend_face: FaceId,
     /// How many strips were swept; fewer than curves where neighbouring curves share one.
     pub strips: usize,
+    /// How many corner patches were made.
+    pub corners: usize,
     /// Largest | distance of a ball's centre to a base patch − radius | over the radius.
     pub residual: f64,
     /// Where the ball was made smaller: place, and the radius there.
@@ -145,7 +164,10 @@ pub enum Error {
     Cancelled(#[from] Cancelled),
 }
 
-/// Blends closed `curves` of `mesh`. Vertices outside the strips keep their bits and their order.
+/// Blends `curves` of `mesh`. Vertices outside the blend keep their bits and their order.
+///
+/// Where three or more open curves meet they are set back from a corner patch. One that ends alone stops at the surface
+/// that bounds both its sides, or runs out where there is none.
 ///
 /// # Errors
 /// [`Error::DoesNotFit`] where the radius is the reason, with a place and a radius that works.
@@ -199,11 +221,12 @@ fn attempt(
 ) -> Result<Blended, Trouble> {
     let mut mends = Mends::new(params.radius);
     let step = step_length(mesh, curves, params);
+    let network = Network::of(mesh, curves, REACH_AHEAD * params.radius);
     let mut rails: Vec<Option<Rail>> = curves.iter().map(|_| None).collect();
     for round in 0.. {
         watch.step("blend", round as f64 / rounds as f64)?;
-        let trouble = match roll_missing(mesh, curves, params, &mends, step, &mut rails)
-            .and_then(|()| assemble(mesh, curves, params, step, &rails, watch))
+        let trouble = match roll_missing(mesh, curves, &network, params, &mends, step, &mut rails)
+            .and_then(|()| assemble(mesh, curves, &network, params, step, &rails, watch))
         {
             Ok(mut blended) => {
                 mends.account_for(&rails, &mut blended);
@@ -239,16 +262,25 @@ fn step_length(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params
     edges.get(edges.len() * 3 / 4).map_or(widest, |&e| (1.2 * e).clamp(0.5 * widest, widest))
 }
 
+/// How far ahead of a curve's end its sides are kept apart, in radii.
+const REACH_AHEAD: f64 = 6.0;
+/// Length over which a ball runs out, in radii, and its share of the curve where that is short.
+const RUN_OUT: (f64, f64) = (4.0, 0.4);
+/// Share of the radius that a ball has left at the very end.
+const TIP: f64 = 0.03;
+
 fn roll_missing(
     mesh: &Connected<TriMesh>,
     curves: &[BlendCurve],
+    network: &Network,
     params: &Params,
     mends: &Mends,
     step: f64,
     rails: &mut [Option<Rail>],
 ) -> Result<(), Trouble> {
-    let spine_params = spine::Params {
-        radius: mends.radius.clone(),
+    let spine_params = |curve: usize| spine::Params {
+        radius: running_out(mesh, curves, network, curve, mends.radius.clone()),
+        walls: network.walls(mesh, curve),
         alpha: params.alpha,
         solver: params.solver,
         step,
@@ -258,7 +290,7 @@ fn roll_missing(
     let rolled: Vec<_> = rails
         .par_iter()
         .enumerate()
-        .map(|(i, rail)| rail.is_none().then(|| roll(mesh, &curves[i], curves, &spine_params)))
+        .map(|(i, rail)| rail.is_none().then(|| roll(mesh, &curves[i], curves, &spine_params(i))))
         .collect();
     let mut places = Vec::new();
     for (rail, rolled) in rails.iter_mut().zip(rolled) {
@@ -283,58 +315,92 @@ fn roll_missing(
     if places.is_empty() { Ok(()) } else { Err(Trouble::at("the ball cannot roll on", places)) }
 }
 
+/// The radius along a curve, which dwindles where the curve runs out.
+fn running_out(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    network: &Network,
+    curve: usize,
+    mut radius: RadiusField,
+) -> RadiusField {
+    let extent = (RUN_OUT.0 * radius.base).min(RUN_OUT.1 * curves[curve].length(mesh));
+    let nodes = network.ends[curve].iter().flatten().map(|&n| &network.nodes[n]);
+    let tips = nodes.filter(|n| matches!(n.kind, Kind::RunOut { .. }));
+    radius.dips.extend(tips.map(|n| Dip { at: mesh.position(n.vertex), factor: TIP, extent }));
+    radius
+}
+
 /// One pass of all later stages over finished rails.
 fn assemble(
     mesh: &Connected<TriMesh>,
     curves: &[BlendCurve],
+    network: &Network,
     params: &Params,
     step: f64,
     rails: &[Option<Rail>],
     watch: &Watch,
 ) -> Result<Blended, Trouble> {
-    let rails = distinct(rails, step);
-    let opened = cut_linkages(mesh, &rails, params.snap, params.radius, watch)?;
-    let cut = &opened.embedded.mesh;
-    let mut strips = Vec::with_capacity(rails.len());
-    let mut first_new = cut.vertex_count() as u32;
     let fineness = Fineness { tolerance: params.tolerance, chord: step, reach: params.reach };
+    let ends = Ends { mesh, curves, network, profile: &params.profile, fineness };
+    let layout = ends.lay_out(rails, &distinct(rails, step))?;
+    let opened = cut_linkages(mesh, network, &layout, params.snap, params.radius, watch)?;
+    let cut = &opened.embedded.mesh;
+    let (mut strips, mut new_points) = (Vec::with_capacity(rails.len()), Vec::new());
+    let first_new = cut.vertex_count() as u32;
     let mut folds = Vec::new();
-    for (rail, linkages) in rails.iter().zip(&opened.linkages) {
-        let strip = sweep(rail, linkages, &params.profile, fineness, first_new, |v| cut.position(v));
-        first_new += strip.points.len() as u32;
-        folds.extend_from_slice(&strip.folds);
+    for (i, stretch) in layout.stretches.iter().enumerate() {
+        let first = first_new + new_points.len() as u32;
+        let sweep_along = |stretch| {
+            let (linkages, stops) = (&opened.linkages[i], &opened.stops[i]);
+            sweep(stretch, linkages, stops, &params.profile, fineness, first, |v| cut.position(v))
+        };
+        let strip = stretch.as_ref().map(sweep_along);
+        if let Some(strip) = &strip {
+            new_points.extend_from_slice(&strip.piece.points);
+            folds.extend_from_slice(&strip.folds);
+        }
         strips.push(strip);
     }
     if !folds.is_empty() {
         return Err(Trouble::at("the swept surface folds", folds));
     }
+    let mut patches = Vec::with_capacity(layout.corners.len());
+    for (corner, joints) in layout.corners.iter().zip(&opened.joints) {
+        let position = |v: VertexId| if v.0 < first_new { cut.position(v) } else { new_points[(v.0 - first_new) as usize] };
+        let patch = fill(corner, joints, &layout.stretches, &strips, first_new + new_points.len() as u32, position)?;
+        new_points.extend_from_slice(&patch.points);
+        patches.push(patch);
+    }
     let connected = Connected::new(cut)
         .map_err(|e| Trouble::at("the cut mesh is not a manifold", e.place.into_iter().collect()))?;
     let removed = between(mesh, &connected, &opened, curves)?;
-    let sewn = sew(&opened, &removed, &strips);
+    let strips: Vec<_> = strips.into_iter().flatten().collect();
+    let count = strips.len();
+    let pieces: Vec<_> = strips.into_iter().map(|s| s.piece).chain(patches).collect();
+    let sewn = sew(&opened, &removed, &pieces);
     check(&sewn, watch)?;
-    let residual = rails.iter().map(|r| r.residual).fold(0.0, f64::max) / params.radius;
+    let residual = rails.iter().flatten().map(|r| r.residual).fold(0.0, f64::max) / params.radius;
     Ok(Blended {
         mesh: sewn.mesh,
         origins: sewn.origins,
         first_blend_face: sewn.first_new_face,
-        strips: rails.len(),
+        strips: count,
+        corners: layout.corners.len(),
         residual,
         shrunk: Vec::new(),
         full_share: 1.0,
     })
 }
 
-/// Rails without those that run along an earlier one: neighbouring curves whose balls roll the same way are swallowed
-/// by one strip.
-fn distinct(rails: &[Option<Rail>], step: f64) -> Vec<&Rail> {
-    let mut kept: Vec<&Rail> = Vec::new();
-    for rail in rails.iter().flatten() {
+/// Which rails do not run along an earlier one: neighbouring closed curves whose balls roll the same way are swallowed by
+/// one strip.
+fn distinct(rails: &[Option<Rail>], step: f64) -> Vec<bool> {
+    let mut kept = vec![true; rails.len()];
+    for (i, rail) in rails.iter().enumerate() {
+        let Some(rail) = rail.as_ref().filter(|r| r.closed) else { continue };
         let start = rail.samples[0].center;
-        let near = |other: &&Rail| other.samples.iter().any(|s| s.center.distance(start) < 0.75 * step);
-        if !kept.iter().any(near) {
-            kept.push(rail);
-        }
+        let near = |other: &Rail| other.samples.iter().any(|s| s.center.distance(start) < 0.75 * step);
+        kept[i] = !(0..i).any(|j| kept[j] && rails[j].as_ref().is_some_and(|r| r.closed && near(r)));
     }
     kept
 }
@@ -411,8 +477,9 @@ impl Mends {
         blended.shrunk = self.radius.dips.iter().map(|d| (d.at, self.radius.at(d.at).0)).collect();
         let (mut full, mut total) = (0.0, 0.0);
         for rail in rails.iter().flatten() {
-            for (i, s) in rail.samples.iter().enumerate() {
-                let length = s.center.distance(rail.samples[(i + 1) % rail.samples.len()].center);
+            let next = rail.samples.iter().skip(1).chain(rail.samples.first().filter(|_| rail.closed));
+            for (s, next) in rail.samples.iter().zip(next) {
+                let length = s.center.distance(next.center);
                 total += length;
                 if s.radius >= 0.999 * self.radius.base {
                     full += length;

@@ -1,7 +1,7 @@
 //! What lies between the linkages is removed and the strips are put in its place.
 
-use super::linkage::{Linkage, Opened};
-use super::strip::Strip;
+use super::linkage::Opened;
+use super::strip::Piece;
 use super::trouble::Trouble;
 use glam::DVec3;
 use mesh_core::{
@@ -22,8 +22,7 @@ pub(crate) fn between(
     opened: &Opened,
     curves: &[BlendCurve],
 ) -> Result<FaceMap<bool>, Trouble> {
-    let chains = || opened.linkages.iter().flatten().map(Linkage::chain);
-    let walls = chains().flat_map(|c| c.windows(2).map(|w| [w[0], w[1]]));
+    let walls = opened.loops.iter().flat_map(|c| c.windows(2).map(|w| [w[0], w[1]]));
     let mut seeds = Vec::new();
     for curve in curves {
         let Some(h) = curve.halfedges.iter().find_map(|&h| halfedge(cut, mesh.tail(h), mesh.head(h))) else {
@@ -34,16 +33,11 @@ pub(crate) fn between(
     }
     let removed = flood(cut, walls, &seeds);
     let mut leaks = Vec::new();
-    for linkages in &opened.linkages {
-        for (side, linkage) in linkages.iter().enumerate() {
-            for w in linkage.chain().windows(2) {
-                // The left linkage has what stays on its left, the right one on its right.
-                let (stays, goes) = if side == 0 { ([w[0], w[1]], [w[1], w[0]]) } else { ([w[1], w[0]], [w[0], w[1]]) };
-                let gone = |[a, b]: [VertexId; 2]| halfedge(cut, a, b).map(|h| removed[h.face()]);
-                if gone(stays) != Some(false) || gone(goes) != Some(true) {
-                    leaks.push(cut.position(w[0]));
-                }
-            }
+    for w in opened.loops.iter().flat_map(|c| c.windows(2)) {
+        // Every loop has what stays on its left.
+        let gone = |a: VertexId, b: VertexId| halfedge(cut, a, b).map(|h| removed[h.face()]);
+        if gone(w[0], w[1]) != Some(false) || gone(w[1], w[0]) != Some(true) {
+            leaks.push(cut.position(w[0]));
         }
     }
     if leaks.is_empty() { Ok(removed) } else { Err(Trouble::at("the linkages do not enclose the blend curve", leaks)) }
@@ -64,7 +58,7 @@ pub(crate) struct Sewn {
 
 /// Drops the removed faces and the vertices that only they used, keeps the order of all others, appends the strips.
 /// Strip vertex ids count from the cut mesh's vertex count, strip after strip.
-pub(crate) fn sew(opened: &Opened, removed: &FaceMap<bool>, strips: &[Strip]) -> Sewn {
+pub(crate) fn sew(opened: &Opened, removed: &FaceMap<bool>, pieces: &[Piece]) -> Sewn {
     let (cut, origins) = (&opened.embedded.mesh, &opened.embedded.origins);
     let mut used = vec![true; cut.vertex_count()];
     let gone = || cut.face_ids().filter(|&f| removed[f]);
@@ -79,7 +73,7 @@ pub(crate) fn sew(opened: &Opened, removed: &FaceMap<bool>, strips: &[Strip]) ->
         }
     }
     let mut new_id = vec![VertexId(u32::MAX); cut.vertex_count()];
-    let inner: usize = strips.iter().map(|s| s.points.len()).sum();
+    let inner: usize = pieces.iter().map(|s| s.points.len()).sum();
     let mut positions = Vec::with_capacity(cut.vertex_count() + inner);
     let mut vertex_origins = Vec::with_capacity(cut.vertex_count() + inner);
     for v in cut.vertex_ids().filter(|v| used[v.index()]) {
@@ -88,13 +82,13 @@ pub(crate) fn sew(opened: &Opened, removed: &FaceMap<bool>, strips: &[Strip]) ->
         vertex_origins.push(origins.vertices[v]);
     }
     let shift = positions.len() as u32;
-    let first_strip = cut.vertex_count() as u32;
-    for strip in strips {
-        positions.extend_from_slice(&strip.points);
-        vertex_origins.extend(std::iter::repeat_n(VertexOrigin::New { stage: STAGE }, strip.points.len()));
+    let first_piece = cut.vertex_count() as u32;
+    for piece in pieces {
+        positions.extend_from_slice(&piece.points);
+        vertex_origins.extend(std::iter::repeat_n(VertexOrigin::New { stage: STAGE }, piece.points.len()));
     }
     let renumber = |v: VertexId| {
-        if v.0 < first_strip { new_id[v.index()] } else { VertexId(v.0 - first_strip + shift) }
+        if v.0 < first_piece { new_id[v.index()] } else { VertexId(v.0 - first_piece + shift) }
     };
     let (mut faces, mut face_origins) = (Vec::with_capacity(cut.face_count()), Vec::new());
     for f in cut.face_ids().filter(|&f| !removed[f]) {
@@ -102,9 +96,9 @@ pub(crate) fn sew(opened: &Opened, removed: &FaceMap<bool>, strips: &[Strip]) ->
         face_origins.push(origins.faces[f]);
     }
     let first_new_face = FaceId::from(faces.len());
-    for strip in strips {
-        faces.extend(strip.faces.iter().map(|&f| f.map(renumber)));
-        face_origins.extend(std::iter::repeat_n(FaceOrigin::New { stage: STAGE }, strip.faces.len()));
+    for piece in pieces {
+        faces.extend(piece.faces.iter().map(|&f| f.map(renumber)));
+        face_origins.extend(std::iter::repeat_n(FaceOrigin::New { stage: STAGE }, piece.faces.len()));
     }
     Sewn {
         mesh: TriMesh { positions, faces },

@@ -1,10 +1,11 @@
 //! The swept surface as triangles: profiles across, cells between neighbouring profiles, sewn to the linkages' vertices.
 
 use super::linkage::Linkage;
+use super::stretch::{Ending, Stretch};
 use glam::DVec3;
 use mesh_core::VertexId;
 use profile_nurbs::{Profile, Section};
-use spine::{Convexity, Rail, Sample};
+use spine::{Convexity, Sample};
 
 /// How finely the sweep is tessellated.
 #[derive(Clone, Copy, Debug)]
@@ -17,62 +18,86 @@ pub(crate) struct Fineness {
     pub reach: Option<f64>,
 }
 
+/// Triangles to be put in.
+#[derive(Default)]
+pub(crate) struct Piece {
+    /// Corners; ids from the piece's `first_new` on are its own vertices.
+    pub faces: Vec<[VertexId; 3]>,
+    /// Its own vertices in id order.
+    pub points: Vec<DVec3>,
+}
+
 /// Triangles of one strip, and where they face the wrong way.
 pub(crate) struct Strip {
-    /// Corners; ids from `first_new` on are the strip's own vertices.
-    pub faces: Vec<[VertexId; 3]>,
-    /// The strip's own vertices in id order.
-    pub points: Vec<DVec3>,
+    pub piece: Piece,
     /// Middles of the triangles that turn their backs to where the profile's front is: the sweep folds there.
     pub folds: Vec<DVec3>,
+    /// The first and the last profile, from the left linkage to the right one.
+    pub ends: [Vec<VertexId>; 2],
 }
 
-/// One profile's vertices, from the left linkage to the right one.
-struct Column {
-    first_inner: u32,
-    inner: u32,
+/// Profiles as vertices, from the left linkage to the right one, one after the other.
+#[derive(Default)]
+struct Columns {
+    vertices: Vec<VertexId>,
+    ends: Vec<usize>,
 }
 
-/// Sweeps `profile` along `rail`. `linkages` hold the vertices on either side, `position` places those vertices.
+impl Columns {
+    fn get(&self, i: usize) -> &[VertexId] {
+        &self.vertices[if i == 0 { 0 } else { self.ends[i - 1] }..self.ends[i]]
+    }
+}
+
+/// Sweeps `profile` along a stretch. `linkages` and `stops` hold the vertices around it, `position` places them.
 pub(crate) fn sweep(
-    rail: &Rail,
+    stretch: &Stretch,
     linkages: &[Linkage; 2],
+    stops: &[Vec<VertexId>; 2],
     profile: &Profile,
     fineness: Fineness,
     first_new: u32,
     position: impl Fn(VertexId) -> DVec3,
 ) -> Strip {
-    let mut strip = Strip { faces: Vec::new(), points: Vec::new(), folds: Vec::new() };
-    let mut row = Vec::new();
-    let columns: Vec<Column> = rail
-        .samples
-        .iter()
-        .enumerate()
-        .map(|(i, sample)| {
-            let feet = [0, 1].map(|side| position(linkages[side].foot(i)));
-            profile_points(profile, sample, feet, fineness, &mut row);
-            let first_inner = first_new + strip.points.len() as u32;
-            let inner = row.len().saturating_sub(2);
-            strip.points.extend_from_slice(&row[1..=inner]);
-            Column { first_inner, inner: inner as u32 }
-        })
-        .collect();
-    let n = columns.len();
+    let mut strip = Strip { piece: Piece::default(), folds: Vec::new(), ends: [Vec::new(), Vec::new()] };
+    let (mut row, mut columns) = (Vec::new(), Columns::default());
+    let n = stretch.stations();
     for i in 0..n {
-        let (here, next) = (&rail.samples[i], &rail.samples[(i + 1) % n]);
-        let front = Front { center: here.center.midpoint(next.center), convexity: rail.convexity };
+        match stretch.station(i) {
+            Ok(ball) => {
+                let feet = [0, 1].map(|side| linkages[side].foot(i));
+                profile_points(profile, ball, feet.map(&position), fineness, &mut row);
+                columns.vertices.push(feet[0]);
+                let first = first_new + strip.piece.points.len() as u32;
+                let inner = row.len() - 2;
+                columns.vertices.extend((0..inner as u32).map(|k| VertexId(first + k)));
+                columns.vertices.push(feet[1]);
+                strip.piece.points.extend_from_slice(&row[1..=inner]);
+            }
+            Err(Ending::Stop(_)) => columns.vertices.extend_from_slice(&stops[usize::from(i > 0)]),
+            Err(_) => columns.vertices.push(linkages[0].foot(i)),
+        }
+        columns.ends.push(columns.vertices.len());
+    }
+    let last = n - 1;
+    strip.ends = [0, last].map(|i| columns.get(i).to_vec());
+    for i in 0..if stretch.rail.closed { n } else { last } {
+        let next = (i + 1) % n;
+        let balls = [i, next].map(|k| stretch.station(k).ok());
+        let centers = [balls[0].or(balls[1]), balls[1].or(balls[0])].map(|b| b.map_or(DVec3::ZERO, |b| b.center));
+        let front = Front { center: centers[0].midpoint(centers[1]), convexity: stretch.rail.convexity };
         let cell = Cell {
-            columns: [&columns[i], &columns[(i + 1) % n]],
+            columns: [columns.get(i), columns.get(next)],
             spans: [0, 1].map(|s| linkages[s].span(i)),
             at: |v: VertexId| {
-                if v.0 >= first_new { strip.points[(v.0 - first_new) as usize] } else { position(v) }
+                if v.0 >= first_new { strip.piece.points[(v.0 - first_new) as usize] } else { position(v) }
             },
             front,
         };
-        let before = strip.faces.len();
-        cell.triangulate(&mut strip.faces);
-        for face in &strip.faces[before..] {
-            let corners = face.map(cell.at);
+        let before = strip.piece.faces.len();
+        cell.triangulate(&mut strip.piece.faces);
+        for face in &strip.piece.faces[before..] {
+            let corners = face.map(&cell.at);
             if !front.shows(corners) {
                 strip.folds.push(corners.iter().sum::<DVec3>() / 3.0);
             }
@@ -82,14 +107,21 @@ pub(crate) fn sweep(
 }
 
 /// Points of one profile, feet included.
-fn profile_points(profile: &Profile, ball: &Sample, feet: [DVec3; 2], fineness: Fineness, row: &mut Vec<DVec3>) {
+pub(crate) fn profile_points(
+    profile: &Profile,
+    ball: &Sample,
+    feet: [DVec3; 2],
+    fineness: Fineness,
+    row: &mut Vec<DVec3>,
+) {
     row.clear();
     let section = section(ball.center, feet);
     let section = fineness.reach.map_or(section, |reach| section.with_reach(ball.center, reach));
     let bend = (feet[0] - ball.center).angle_between(feet[1] - ball.center);
     // Chords of an arc of angle δ stand off by r·(1 − cos(δ/2)).
     let widest = 2.0 * (1.0 - fineness.tolerance.clamp(1e-9, 0.5)).acos();
-    let count = (bend / widest).ceil().max((bend * ball.radius / fineness.chord).round()).clamp(1.0, 4096.0);
+    // Two at least, so that a profile next to a tip has a side for each linkage.
+    let count = (bend / widest).ceil().max((bend * ball.radius / fineness.chord).round()).clamp(2.0, 4096.0);
     profile.points(&section, count as usize, row);
 }
 
@@ -127,9 +159,10 @@ impl Front {
     }
 }
 
-/// The quadrilateral between two neighbouring profiles.
+/// The quadrilateral between two neighbouring profiles; a triangle where one of them is a point.
 struct Cell<'a, P> {
-    columns: [&'a Column; 2],
+    /// Vertices of each profile from the left linkage to the right one.
+    columns: [&'a [VertexId]; 2],
     /// Vertices of each linkage from this profile's foot to the next one's, both included.
     spans: [&'a [VertexId]; 2],
     at: P,
@@ -137,31 +170,21 @@ struct Cell<'a, P> {
 }
 
 impl<P: Fn(VertexId) -> DVec3> Cell<'_, P> {
-    /// Vertex `k` of a column, counted from the left foot.
-    fn vertex(&self, column: usize, k: u32) -> VertexId {
-        let end =
-            |side: usize| if column == 0 { self.spans[side][0] } else { self.spans[side][self.spans[side].len() - 1] };
-        match k {
-            0 => end(0),
-            k if k > self.columns[column].inner => end(1),
-            k => VertexId(self.columns[column].first_inner + k - 1),
-        }
-    }
-
     /// Zips the two columns together by their parameters, the linkages' own vertices fanned in at both ends.
     fn triangulate(&self, faces: &mut Vec<[VertexId; 3]>) {
-        let last = self.columns.map(|c| c.inner + 1);
+        let [left, right] = self.columns;
+        let last = [left.len() - 1, right.len() - 1];
         let (mut i, mut j) = (0, 0);
         while i < last[0] || j < last[1] {
-            let (l, r) = (self.vertex(0, i), self.vertex(1, j));
+            let (l, r) = (left[i], right[j]);
             let first = i == 0 && j == 0;
             let take_left = j == last[1] || (i < last[0] && self.left_first([i, j], last));
             let apex = if take_left {
                 i += 1;
-                self.vertex(0, i)
+                left[i]
             } else {
                 j += 1;
-                self.vertex(1, j)
+                right[j]
             };
             if first {
                 // Seen from the strip, the left linkage runs backwards.
@@ -191,12 +214,12 @@ impl<P: Fn(VertexId) -> DVec3> Cell<'_, P> {
     }
 
     /// Which column to climb: the one that lags behind, or on a tie the one with the shorter diagonal.
-    fn left_first(&self, [i, j]: [u32; 2], last: [u32; 2]) -> bool {
+    fn left_first(&self, [i, j]: [usize; 2], last: [usize; 2]) -> bool {
         let (left, right) = ((i + 1) * last[1], (j + 1) * last[0]);
         if left != right {
             return left < right;
         }
-        let p = |column, k| (self.at)(self.vertex(column, k));
+        let p = |column: usize, k: usize| (self.at)(self.columns[column][k]);
         p(0, i + 1).distance_squared(p(1, j)) <= p(1, j + 1).distance_squared(p(0, i))
     }
 }
