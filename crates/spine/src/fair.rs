@@ -170,6 +170,8 @@ fn subdivide(
     let mut filled = Vec::with_capacity(samples.len());
     for (here, next) in pairs(samples, closed) {
         filled.push(*here);
+        // Where the ball itself goes far, it goes straight.
+        let gap = gap.max(1.5 * here.center.distance(next.center));
         // A jump is never longer than a few diameters, so the count is bounded.
         let pieces = (here.advance(next) / gap).ceil().clamp(1.0, 256.0) as u32;
         filled.extend((1..pieces).filter_map(|k| between(here, next, f64::from(k) / f64::from(pieces))));

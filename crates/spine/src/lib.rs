@@ -54,8 +54,12 @@ pub struct Params {
     /// Least reach of the base patches, as a multiple of the radius. The paper uses 1.75; sharp wedges need more and
     /// get it by themselves, so that a larger value costs time and gains nothing.
     pub alpha: f64,
-    /// Largest step along the spine, in model units.
+    /// Step along the spine, in model units.
     pub step: f64,
+    /// Longest step, taken where the spine is straight; no less than `step`.
+    pub longest: f64,
+    /// Largest sagitta of a step longer than `step`, as a share of the radius.
+    pub sagitta: f64,
     /// Standard deviation of the kernel that fairs each linkage, in mean lengths of the facets it crosses. It is never
     /// taken beyond half the radius, and is zero on planes and across creases.
     pub fairness: f64,
@@ -85,6 +89,8 @@ impl Params {
             radius: RadiusField::constant(radius),
             alpha: 1.75, // [Liu2005] §3
             step: 0.2 * radius,
+            longest: 0.2 * radius,
+            sagitta: 1e-3,
             fairness: 0.6,
             softenings: Vec::new(),
             solver: Solver::Contact,
@@ -264,7 +270,7 @@ pub fn roll<M: Adjacency + Positions + Sync>(
             }
         };
         let traced = match &params.solver {
-            Solver::Contact => march::trace(mesh, curve, convexity, &patches, radius, params.step, footing)?,
+            Solver::Contact => march::trace(mesh, curve, convexity, &patches, params, footing)?,
             Solver::Offset(offset) => {
                 let base = offset::Base { patches: &patches, barriers: &barriers, alpha };
                 offset::trace(mesh, curve, convexity, base, radius, params.step, offset)?
@@ -278,6 +284,9 @@ pub fn roll<M: Adjacency + Positions + Sync>(
                 continue;
             }
         };
+        if let [only] = contacts[..] {
+            return Err(Error::Stuck { at: only.center, radius: only.radius, wanted: radius.base });
+        }
         let gap = 1.5 * params.step;
         let fairing = fair::Fairing { fairness: params.fairness, gap, softenings: &params.softenings, closed };
         let (samples, filled) = fair::fair(mesh, &patches, radius, &contacts, fairing);

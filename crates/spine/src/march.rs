@@ -5,7 +5,7 @@
 //! not at all, the trace just goes on, and where the ball is blocked by a third contact it turns there, as a real
 //! ball does.
 
-use crate::Error;
+use crate::{Error, Params};
 use crate::contact::Contact;
 use crate::curve::{BlendCurve, Convexity, face_normal};
 use crate::patch::Patch;
@@ -37,7 +37,7 @@ pub(crate) enum Footing {
     Over,
 }
 
-/// Rolls a ball along `curve` with steps of at most `step`, looking at every ball's `footing`.
+/// Rolls a ball along `curve`, looking at every ball's `footing`.
 ///
 /// # Errors
 /// [`Error::NoStart`] where no ball can be seated anywhere, [`Error::Stuck`] where the trace cannot go on,
@@ -47,10 +47,10 @@ pub(crate) fn trace<M: Adjacency + Positions>(
     curve: &BlendCurve,
     convexity: Convexity,
     patches: &[Patch; 2],
-    radius: &RadiusField,
-    step: f64,
+    params: &Params,
     footing: impl Fn(&Contact) -> Footing,
 ) -> Result<Trace, Error> {
+    let (radius, step) = (&params.radius, params.step);
     let (start, sign) = first_contact(mesh, curve, convexity, patches, radius)?;
     let limit = 8.0 * curve.length(mesh) + 64.0 * radius.base;
     if !curve.closed {
@@ -65,7 +65,7 @@ pub(crate) fn trace<M: Adjacency + Positions>(
             // Past the curve's end there is nothing to demand, so whatever stops the ball ends the trace; that it came
             // far enough is seen where the ends are made.
             while travelled < limit && (contacts.len() as f64) < 8.0 * limit / step {
-                let Some(next) = stride_from(mesh, patches, radius, &here, sign, &mut stride) else { break };
+                let Some(next) = stride_from(mesh, patches, params, &here, sign, &mut stride) else { break };
                 match footing(&next) {
                     Footing::Firm => {}
                     Footing::AtRim => return Ok(Trace::RanOff),
@@ -74,7 +74,7 @@ pub(crate) fn trace<M: Adjacency + Positions>(
                 travelled += next.center.distance(here.center);
                 contacts.push(next);
                 here = next;
-                stride = (1.6 * stride).min(step);
+                stride = (1.6 * stride).min(params.longest.max(step));
             }
         }
         return Ok(Trace::Open(contacts));
@@ -82,7 +82,7 @@ pub(crate) fn trace<M: Adjacency + Positions>(
     let mut contacts = vec![start];
     let (mut here, mut travelled, mut stride) = (start, 0.0, step);
     while travelled < limit {
-        let next = stride_from(mesh, patches, radius, &here, sign, &mut stride).ok_or(stuck(&here, radius))?;
+        let next = stride_from(mesh, patches, params, &here, sign, &mut stride).ok_or(stuck(&here, radius))?;
         match footing(&next) {
             Footing::Firm => {}
             Footing::AtRim => return Ok(Trace::RanOff),
@@ -102,7 +102,7 @@ pub(crate) fn trace<M: Adjacency + Positions>(
         travelled += chord.length();
         contacts.push(next);
         here = next;
-        stride = (1.6 * stride).min(step);
+        stride = (1.6 * stride).min(params.longest.max(step));
     }
     Err(Error::Astray { at: here.center, travelled, curve: curve.length(mesh) })
 }
@@ -128,11 +128,12 @@ const SHORTEST: f64 = 5e-4;
 fn stride_from<M: Adjacency + Positions>(
     mesh: &M,
     patches: &[Patch; 2],
-    radius: &RadiusField,
+    params: &Params,
     here: &Contact,
     sign: f64,
     stride: &mut f64,
 ) -> Option<Contact> {
+    let radius = &params.radius;
     let direction = sign * here.tangent()?;
     let known = here.feet.map(|f| f.point);
     while *stride > SHORTEST * radius.base {
@@ -141,6 +142,7 @@ fn stride_from<M: Adjacency + Positions>(
             let chord = next.center - here.center;
             (chord.dot(heading) > 0.3 * *stride && chord.length() < 1.8 * *stride && next.tangent().is_some())
                 .then_some(next)
+                .filter(|next| *stride <= params.step || straight(mesh, patches, params, here, next))
         };
         let ahead = here.center + *stride * direction;
         // Where a third contact blocks the way, the point ahead is already nearer to it: its tangent leads round the
@@ -159,6 +161,22 @@ fn stride_from<M: Adjacency + Positions>(
         *stride *= 0.5;
     }
     None
+}
+
+/// Whether the spine runs nearly straight from one ball to the next: in its tangents, and where a ball in the middle
+/// would stand.
+fn straight<M: Adjacency + Positions>(
+    mesh: &M,
+    patches: &[Patch; 2],
+    params: &Params,
+    here: &Contact,
+    next: &Contact,
+) -> bool {
+    let chord = next.center.distance(here.center);
+    let Some((t, u)) = here.tangent().zip(next.tangent()) else { return false };
+    let most = params.sagitta * params.radius.base;
+    let probe = || Contact::probe(mesh, patches, &params.radius, here.center.midpoint(next.center), None);
+    t.angle_between(u) * chord / 8.0 <= most && probe().is_some_and(|middle| middle.residual <= 2.0 * most)
 }
 
 /// In how many places along a curve a first ball is tried.

@@ -80,10 +80,7 @@ pub(crate) fn set_back(
         let after = crossings[i].map(|m| m.at[0]);
         let own = view.nearest(place);
         let reached = view.sample(own);
-        if view.sample(0.0).center.distance(reached.center) == 0.0
-            && (before.is_none() || after.is_none())
-            && view.before_end(place) > 0.5 * reached.radius
-        {
+        if own == 0.0 && before.is_none() && after.is_none() && view.before_end(place) > 0.5 * reached.radius {
             return Err(Trouble::at("the ball cannot roll on", vec![reached.center]));
         }
         let needed = [before, after].map(|at| at.unwrap_or(own)).into_iter().fold(0.0, f64::max);

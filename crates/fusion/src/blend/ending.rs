@@ -38,7 +38,8 @@ impl Ends<'_> {
     pub fn lay_out(&self, rails: &[Option<Rail>], kept: &[bool]) -> Result<Layout, Trouble> {
         let mut cuts: Vec<[Cut; 2]> = rails.iter().map(|_| [Cut::none(), Cut::none()]).collect();
         let mut setbacks: Vec<Option<Setbacks>> = Vec::with_capacity(self.network.nodes.len());
-        for node in &self.network.nodes {
+        let mut unstoppable = Vec::new();
+        for (n, node) in self.network.nodes.iter().enumerate() {
             setbacks.push(None);
             let found = match &node.kind {
                 Kind::Corner => {
@@ -49,11 +50,20 @@ impl Ends<'_> {
                     cuts
                 }
                 Kind::RunOut { .. } => vec![self.run_out(node, rails)?],
-                Kind::Stop { creases, beyond } => vec![self.stop(node, rails, creases, beyond)?],
+                Kind::Stop { creases, beyond } => match self.stop(node, rails, creases, beyond)? {
+                    Some(cut) => vec![cut],
+                    None => {
+                        unstoppable.push(n);
+                        continue;
+                    }
+                },
             };
             for (dart, cut) in node.darts.iter().zip(found) {
                 cuts[dart.curve][dart.end] = cut;
             }
+        }
+        if !unstoppable.is_empty() {
+            return Err(Trouble::NoStop(unstoppable));
         }
         let mut stretches = Vec::with_capacity(rails.len());
         for ((rail, cuts), keep) in rails.iter().zip(cuts).zip(kept) {
@@ -129,13 +139,14 @@ impl Ends<'_> {
     }
 
     /// Ends a rail at the surface ahead of the node: the last profile is pushed on along the spine until it lies there.
+    /// `None` where it does not arrive.
     fn stop(
         &self,
         node: &Node,
         rails: &[Option<Rail>],
         creases: &[Vec<HalfedgeId>; 2],
         beyond: &[FaceId],
-    ) -> Result<Cut, Trouble> {
+    ) -> Result<Option<Cut>, Trouble> {
         let (mesh, place) = (self.mesh, self.mesh.position(node.vertex));
         let dart = node.darts[0];
         let rail = rails[dart.curve].as_ref().ok_or_else(|| Trouble::at("the ball cannot roll on", vec![place]))?;
@@ -170,7 +181,7 @@ impl Ends<'_> {
                 let mut points = vec![(left, out)];
                 points.extend(hits.iter().map(|h| (h.1, out)));
                 points.push((right, out));
-                return Ok(Cut { at, last: None, ending: Ending::Stop(points) });
+                return Ok(Some(Cut { at, last: None, ending: Ending::Stop(points) }));
             }
             let next = view.advance(at, 0.5 * self.fineness.chord);
             if next <= at {
@@ -178,7 +189,7 @@ impl Ends<'_> {
             }
             at = next;
         }
-        Err(Trouble::at("the blend does not reach the surface at which it should stop", vec![place]))
+        Ok(None)
     }
 
     /// The faces at which a blend stops, as far as it can reach them.

@@ -188,6 +188,7 @@ pub fn blend(
         Trouble::Cancelled(c) => Err(c.into()),
         Trouble::Embed(e) => Err(e.into()),
         Trouble::Spine(e) => Err(e.into()),
+        Trouble::NoStop(_) => Err(Error::NoCurves),
         Trouble::Places { what, places } => {
             let mut workable = None;
             for halvings in 1..=3 {
@@ -221,7 +222,7 @@ fn attempt(
 ) -> Result<Blended, Trouble> {
     let mut mends = Mends::new(params.radius);
     let step = step_length(mesh, curves, params);
-    let network = Network::of(mesh, curves, REACH_AHEAD * params.radius);
+    let mut network = Network::of(mesh, curves, REACH_AHEAD * params.radius);
     let mut rails: Vec<Option<Rail>> = curves.iter().map(|_| None).collect();
     for round in 0.. {
         watch.step("blend", round as f64 / rounds as f64)?;
@@ -234,6 +235,13 @@ fn attempt(
             }
             Err(trouble) => trouble,
         };
+        if let Trouble::NoStop(nodes) = &trouble {
+            for &n in nodes {
+                network.run_out(mesh, curves, n, REACH_AHEAD * params.radius);
+                network.nodes[n].darts.iter().for_each(|d| rails[d.curve] = None);
+            }
+            continue;
+        }
         let Trouble::Places { ref places, .. } = trouble else { return Err(trouble) };
         if params.overlap == Overlap::Error && round >= 2 || round >= rounds || !mends.add(places, params.overlap) {
             return Err(trouble);
@@ -284,6 +292,8 @@ fn roll_missing(
         alpha: params.alpha,
         solver: params.solver,
         step,
+        longest: (curves[curve].length(mesh) / 64.0).clamp(step, (4.0 * params.radius).max(step)),
+        sagitta: 0.2 * params.tolerance,
         softenings: mends.softenings.clone(),
         ..spine::Params::new(params.radius)
     };

@@ -101,6 +101,13 @@ impl Network {
         network
     }
 
+    /// Makes the curve that ends alone at a node run out there instead of stopping.
+    pub fn run_out(&mut self, mesh: &Connected<TriMesh>, curves: &[BlendCurve], node: usize, reach: f64) {
+        let node = &mut self.nodes[node];
+        let ring = node.darts[0].halfedge(mesh, curves).map_or(vec![], |own| around(mesh, own));
+        node.kind = onwards(mesh, &ring, reach);
+    }
+
     /// Edges that end the sides of `curve`.
     pub fn walls(&self, mesh: &Connected<TriMesh>, curve: usize) -> Vec<EdgeId> {
         let nodes = self.ends[curve].iter().flatten().map(|&n| &self.nodes[n]);
@@ -126,10 +133,7 @@ impl Network {
 /// How a curve that meets no other ends.
 fn ending(mesh: &Connected<TriMesh>, curves: &[BlendCurve], vertex: VertexId, dart: Dart, reach: f64) -> Kind {
     let Some(own) = dart.halfedge(mesh, curves) else { return Kind::RunOut { onwards: vec![] } };
-    // Counter-clockwise from the curve itself.
-    let mut ring: Vec<HalfedgeId> = mesh.ring(vertex).collect();
-    let at = ring.iter().position(|&h| h == own).unwrap_or(0);
-    ring.rotate_left(at);
+    let ring = around(mesh, own);
     let out = (mesh.position(vertex) - mesh.position(mesh.head(own))).normalize_or_zero();
     let sharp = |h: HalfedgeId| dihedral_angle(mesh, h).is_some_and(|a| a.abs().to_degrees() >= CREASE);
     let creases: Vec<usize> = (1..ring.len()).filter(|&i| sharp(ring[i])).collect();
@@ -140,9 +144,23 @@ fn ending(mesh: &Connected<TriMesh>, curves: &[BlendCurve], vertex: VertexId, da
             return Kind::Stop { creases: [left, right].map(|i| follow(mesh, ring[i], reach, &sharp)), beyond };
         }
     }
-    let ahead = |h: &HalfedgeId| (mesh.position(mesh.head(*h)) - mesh.position(vertex)).normalize_or_zero().dot(out);
-    let onwards = ring.into_iter().skip(1).max_by(|a, b| ahead(a).total_cmp(&ahead(b)));
-    let onwards = onwards.map_or(vec![], |h| follow(mesh, h, reach, &|_| true));
+    onwards(mesh, &ring, reach)
+}
+
+/// The halfedges that leave the tail of `own`, counter-clockwise from that.
+fn around(mesh: &Connected<TriMesh>, own: HalfedgeId) -> Vec<HalfedgeId> {
+    let mut ring: Vec<HalfedgeId> = mesh.ring(mesh.tail(own)).collect();
+    let at = ring.iter().position(|&h| h == own).unwrap_or(0);
+    ring.rotate_left(at);
+    ring
+}
+
+/// A run-out of the curve along the first halfedge of `ring`.
+fn onwards(mesh: &Connected<TriMesh>, ring: &[HalfedgeId], reach: f64) -> Kind {
+    let along = |h: HalfedgeId| (mesh.position(mesh.head(h)) - mesh.position(mesh.tail(h))).normalize_or_zero();
+    let ahead = |h: &&HalfedgeId| -along(**h).dot(ring.first().map_or(DVec3::ZERO, |&own| along(own)));
+    let straightest = ring.iter().skip(1).max_by(|a, b| ahead(a).total_cmp(&ahead(b)));
+    let onwards = straightest.map_or(vec![], |&h| follow(mesh, h, reach, &|_| true));
     Kind::RunOut { onwards: onwards.into_iter().map(|h| mesh.edge(h)).collect() }
 }
 

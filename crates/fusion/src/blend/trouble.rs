@@ -14,6 +14,8 @@ pub(crate) enum Trouble {
         /// Where, in model units.
         places: Vec<DVec3>,
     },
+    /// Nodes at which a curve cannot stop at the surface ahead: it has to run out.
+    NoStop(Vec<usize>),
     /// The curves could not be embedded for another reason.
     Embed(EmbedError),
     /// The rolling itself failed for a reason without a place.
