@@ -43,6 +43,11 @@ impl BlendCurve {
         Ok(Self { halfedges, closed: true })
     }
 
+    /// The points of the chain; of a closed one the first is not repeated, of an open one the last is left out.
+    pub fn points<M: Faces + Positions>(&self, mesh: &M) -> Vec<DVec3> {
+        self.halfedges.iter().map(|&h| mesh.position(mesh.tail(h))).collect()
+    }
+
     /// Length in model units.
     pub fn length<M: Faces + Positions>(&self, mesh: &M) -> f64 {
         self.halfedges.iter().map(|&h| mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h)))).sum()

@@ -100,7 +100,7 @@ impl Params {
 }
 
 /// A ball's way along a blend curve.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Rail {
     /// Balls in order, running the same way as the blend curve. Along a closed one the last is next to the first; along
     /// an open one they begin and end past its ends, as far as the patches carry the ball.
@@ -257,7 +257,10 @@ pub fn roll<M: Adjacency + Positions + Sync>(
         let footing = |c: &Contact| {
             let at_end = |e| !curve.closed && barriers.contains(&e) && !own.contains(&e);
             let on_curve = |e| barriers.contains(&e);
-            let past = ends.iter().map(|(at, out)| (c.center - *at).dot(*out)).fold(f64::NEG_INFINITY, f64::max);
+            // Beyond the plane square to an end; a curve that bends back comes there too, but farther off.
+            let near = |at: DVec3| c.center.distance(at) < 3.0 * alpha * radius.base;
+            let beyond = |(at, out): &(DVec3, DVec3)| near(*at).then(|| (c.center - *at).dot(*out));
+            let past = ends.iter().filter_map(beyond).fold(f64::NEG_INFINITY, f64::max);
             let at_rim = |s: usize| on_rim(mesh, &patches[s], &barriers, &c.feet[s]);
             if past > alpha * radius.base || (0..2).any(|s| on_edge(mesh, &c.feet[s], at_end) || past > 0.0 && at_rim(s)) {
                 Footing::Over

@@ -54,30 +54,7 @@ pub(crate) fn trace<M: Adjacency + Positions>(
     let (start, sign) = first_contact(mesh, curve, convexity, patches, radius)?;
     let limit = 8.0 * curve.length(mesh) + 64.0 * radius.base;
     if !curve.closed {
-        let mut contacts = vec![];
-        for sign in [-sign, sign] {
-            contacts.reverse();
-            let mut here = *contacts.last().unwrap_or(&start);
-            if contacts.is_empty() {
-                contacts.push(start);
-            }
-            let (mut travelled, mut stride) = (0.0, step);
-            // Past the curve's end there is nothing to demand, so whatever stops the ball ends the trace; that it came
-            // far enough is seen where the ends are made.
-            while travelled < limit && (contacts.len() as f64) < 8.0 * limit / step {
-                let Some(next) = stride_from(mesh, patches, params, &here, sign, &mut stride) else { break };
-                match footing(&next) {
-                    Footing::Firm => {}
-                    Footing::AtRim => return Ok(Trace::RanOff),
-                    Footing::Tipping | Footing::Over => break,
-                }
-                travelled += next.center.distance(here.center);
-                contacts.push(next);
-                here = next;
-                stride = (1.6 * stride).min(params.longest.max(step));
-            }
-        }
-        return Ok(Trace::Open(contacts));
+        return Ok(trace_open(mesh, patches, params, start, sign, limit, footing));
     }
     let mut contacts = vec![start];
     let (mut here, mut travelled, mut stride) = (start, 0.0, step);
@@ -105,6 +82,44 @@ pub(crate) fn trace<M: Adjacency + Positions>(
         stride = (1.6 * stride).min(params.longest.max(step));
     }
     Err(Error::Astray { at: here.center, travelled, curve: curve.length(mesh) })
+}
+
+/// Rolls the ball both ways from `start`.
+fn trace_open<M: Adjacency + Positions>(
+    mesh: &M,
+    patches: &[Patch; 2],
+    params: &Params,
+    start: Contact,
+    sign: f64,
+    limit: f64,
+    footing: impl Fn(&Contact) -> Footing,
+) -> Trace {
+    let mut contacts = vec![start];
+    for sign in [-sign, sign] {
+        contacts.reverse();
+        let (mut here, mut travelled, mut stride) = (contacts[contacts.len() - 1], 0.0, params.step);
+        let most = contacts.len() as f64 + 4.0 * limit / params.step;
+        // Past the curve's end there is nothing to demand, so whatever stops the ball ends the trace; whether it came far
+        // enough is seen where the ends are made.
+        while travelled < limit && (contacts.len() as f64) < most {
+            let Some(next) = stride_from(mesh, patches, params, &here, sign, &mut stride) else { break };
+            match footing(&next) {
+                Footing::Firm => {}
+                Footing::AtRim => return Trace::RanOff,
+                // A long stride must not fall short of the end.
+                Footing::Tipping | Footing::Over if stride > params.step => {
+                    stride = params.step;
+                    continue;
+                }
+                Footing::Tipping | Footing::Over => break,
+            }
+            travelled += next.center.distance(here.center);
+            contacts.push(next);
+            here = next;
+            stride = (1.6 * stride).min(params.longest.max(params.step));
+        }
+    }
+    Trace::Open(contacts)
 }
 
 fn stuck(here: &Contact, radius: &RadiusField) -> Error {

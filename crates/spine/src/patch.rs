@@ -13,6 +13,12 @@ pub struct Patch {
     bvh: TriBvh,
 }
 
+impl std::fmt::Debug for Patch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Patch").field("faces", &self.faces.len()).finish_non_exhaustive()
+    }
+}
+
 /// Which side of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
@@ -64,9 +70,8 @@ impl Patch {
                     continue;
                 }
                 let triangle = mesh.corners(next).map(|v| mesh.position(v));
-                let mark = marks.descend(nearest[face], (triangle[0] + triangle[1] + triangle[2]) / 3.0);
-                let point = marks.points[mark as usize];
-                if closest_point_on_triangle(point, triangle).0.distance_squared(point) <= reach * reach {
+                let (mark, distance) = marks.approach(nearest[face], triangle);
+                if distance <= reach {
                     nearest[next] = mark;
                     faces.push(next);
                     queue.push_back(next);
@@ -107,6 +112,28 @@ impl Marks {
         }
         points.extend(curve.ends(mesh).last().map(|end| end.0));
         Self { points, first_of_edge }
+    }
+
+    /// A mark locally nearest to a triangle, sought from mark `start`, and its distance: by turns the triangle's point
+    /// nearest to the mark and the mark nearest to that point, since a large triangle may come near the curve far from
+    /// its middle.
+    fn approach(&self, start: u32, triangle: [DVec3; 3]) -> (u32, f64) {
+        let gap = |mark: u32| {
+            let p = self.points[mark as usize];
+            let on = closest_point_on_triangle(p, triangle).0;
+            (on, on.distance(p))
+        };
+        let mut mark = self.descend(start, (triangle[0] + triangle[1] + triangle[2]) / 3.0);
+        let mut best = gap(mark);
+        for _ in 0..64 {
+            let next = self.descend(mark, best.0);
+            let found = gap(next);
+            if next == mark || found.1 >= best.1 {
+                break;
+            }
+            (mark, best) = (next, found);
+        }
+        (mark, best.1)
     }
 
     /// Walks from mark `start` to a locally nearest mark of a point, looking a few marks ahead each way.

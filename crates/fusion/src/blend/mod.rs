@@ -242,6 +242,7 @@ fn attempt(
             }
             continue;
         }
+        if std::env::var("DBGT").is_ok() { if let Trouble::Places { what, places } = &trouble { eprintln!("DBG round {round} r {} {what} {} at {:?}", params.radius, places.len(), &places[..places.len().min(6)]); } }
         let Trouble::Places { ref places, .. } = trouble else { return Err(trouble) };
         if params.overlap == Overlap::Error && round >= 2 || round >= rounds || !mends.add(places, params.overlap) {
             return Err(trouble);
@@ -418,6 +419,7 @@ fn distinct(rails: &[Option<Rail>], step: f64) -> Vec<bool> {
 /// The result must be a manifold, and the blend must not meet itself or anything else.
 fn check(sewn: &sew::Sewn, watch: &Watch) -> Result<(), Trouble> {
     if let Err(e) = Connected::new(&sewn.mesh) {
+        if std::env::var("DBGOUT").is_ok() { eprintln!("{e:?}"); let mut s = String::new(); for p in &sewn.mesh.positions { s += &format!("v {} {} {}\n", p.x, p.y, p.z); } for f in &sewn.mesh.faces { s += &format!("f {} {} {}\n", f[0].0+1, f[1].0+1, f[2].0+1); } std::fs::write("/tmp/lead/c/dbg.obj", s).unwrap(); }
         return Err(Trouble::at("the blend pinches", e.place.into_iter().collect()));
     }
     let new: Vec<FaceId> = (sewn.first_new_face.0..sewn.mesh.face_count() as u32).map(FaceId).collect();
