@@ -170,13 +170,26 @@ pub struct Join {
 pub struct Blend {
     /// The mesh to blend
     pub input: PathBuf,
-    #[command(flatten)]
-    pub target: Target,
+    /// Write the result here, or to standard output for `-`
+    #[arg(short, long, value_name = "OUTPUT", required_unless_present = "max_radius")]
+    pub output: Option<PathBuf>,
+    /// Format of the output, where its extension does not tell; needed for `-`
+    #[arg(long, value_name = "FORMAT")]
+    pub to: Option<String>,
+    /// Write where every vertex and face of the result came from, as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub origins: Option<PathBuf>,
     #[command(flatten)]
     pub source: Source,
     /// Radius of the ball
-    #[arg(long, value_name = "R", value_parser = positive_length)]
-    pub radius: Length,
+    #[arg(long, value_name = "R", value_parser = positive_length, required_unless_present = "max_radius")]
+    pub radius: Option<Length>,
+    /// Print the largest radius with which the curves can be blended, and what is in the way of a larger one; write nothing
+    #[arg(long, conflicts_with_all = ["radius", "output"])]
+    pub max_radius: bool,
+    /// Print JSON instead of a sentence, with --max-radius
+    #[arg(long, requires = "max_radius")]
+    pub json: bool,
     /// Least angle between the normals of two neighbouring faces that makes their edge a feature
     #[arg(long, value_name = "DEG", default_value = "40", value_parser = angle)]
     pub angle: f64,

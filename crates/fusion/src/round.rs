@@ -1,12 +1,14 @@
 //! Rounds the feature curves of one mesh.
 
-use crate::features::{self, feature_curves, nearest_curve};
+use crate::features::{self, Convexity, feature_curves, nearest_curve};
 use crate::outcome::{Outcome, account, finish, surviving};
-use crate::{Counts, Error, Report, blend};
+use crate::blend::{self, Limit};
+use crate::{Counts, Error, Report};
 use glam::DVec3;
-use mesh_core::{Connected, TriMesh, Watch};
+use mesh_core::{Adjacency, Connected, Faces, HalfedgeId, TriMesh, VertexId, Watch};
 use mesh_io::{Format, Model};
 use spine::BlendCurve;
+use std::collections::BTreeMap;
 
 /// Which curves are rounded, and how.
 #[derive(Clone, Debug)]
@@ -27,6 +29,17 @@ pub struct Params {
 /// [`Error`]; a radius that does not fit comes with a place and a radius that does.
 pub fn round(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, Error> {
     surviving(Some(&params.blend), |blend| round_once(part, params, blend.unwrap_or(&params.blend), watch))
+}
+
+/// The largest radius at which the chosen curves can be blended without making the ball smaller anywhere, and what is in
+/// the way of a larger one. Nothing is made.
+///
+/// # Errors
+/// As [`round`]; [`Error::Blend`] if no radius works.
+pub fn max_radius(part: &Model, params: &Params, watch: &Watch) -> Result<Limit, Error> {
+    let mesh = Connected::new(part.mesh.clone()).map_err(|source| Error::NotManifold { part: 0, source })?;
+    let curves = choose(&mesh, params)?;
+    Ok(blend::max_radius(&mesh, &curves, &params.blend, watch)?)
 }
 
 fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch) -> Result<Outcome, Error> {
@@ -53,6 +66,50 @@ fn choose(mesh: &Connected<TriMesh>, params: &Params) -> Result<Vec<BlendCurve>,
     }
     chosen.sort_unstable();
     chosen.dedup();
-    let curve = |id: usize| BlendCurve { halfedges: all[id].halfedges.clone(), closed: all[id].closed };
-    Ok(chosen.into_iter().map(curve).collect())
+    let curve = |id: usize| (all[id].convexity, BlendCurve { halfedges: all[id].halfedges.clone(), closed: all[id].closed });
+    Ok(joined(mesh, chosen.into_iter().map(curve).collect()))
+}
+
+/// Curves of one convexity joined where just two of those chosen meet: nothing else sets them apart there.
+fn joined(mesh: &Connected<TriMesh>, mut curves: Vec<(Convexity, BlendCurve)>) -> Vec<BlendCurve> {
+    let mut at: BTreeMap<VertexId, Vec<usize>> = BTreeMap::new();
+    let ends = |c: &BlendCurve| c.halfedges.first().zip(c.halfedges.last()).map(|(&f, &l)| [mesh.tail(f), mesh.head(l)]);
+    for (i, (_, curve)) in curves.iter().enumerate().filter(|(_, c)| !c.1.closed) {
+        ends(curve).into_iter().flatten().for_each(|v| at.entry(v).or_default().push(i));
+    }
+    let mut taken_by: Vec<usize> = (0..curves.len()).collect();
+    let follow = |taken_by: &[usize], mut i: usize| {
+        while taken_by[i] != i {
+            i = taken_by[i];
+        }
+        i
+    };
+    for (vertex, meeting) in at {
+        let &[i, j] = &meeting[..] else { continue };
+        // Earlier joins may have taken a curve into another.
+        let (i, j) = (follow(&taken_by, i), follow(&taken_by, j));
+        if curves[i].0 != curves[j].0 {
+            continue;
+        }
+        if i == j {
+            curves[i].1.closed = ends(&curves[i].1).is_some_and(|e| e[0] == e[1]);
+            continue;
+        }
+        let mut first = curves[i].1.halfedges.clone();
+        let mut second = std::mem::take(&mut curves[j].1.halfedges);
+        if ends(&curves[i].1).is_some_and(|e| e[1] != vertex) {
+            first = reversed(mesh, &first);
+        }
+        if second.first().is_some_and(|&h| mesh.tail(h) != vertex) {
+            second = reversed(mesh, &second);
+        }
+        first.append(&mut second);
+        taken_by[j] = i;
+        curves[i].1.halfedges = first;
+    }
+    curves.into_iter().map(|c| c.1).filter(|c| !c.halfedges.is_empty()).collect()
+}
+
+fn reversed(mesh: &Connected<TriMesh>, chain: &[HalfedgeId]) -> Vec<HalfedgeId> {
+    chain.iter().rev().filter_map(|&h| mesh.twin(h)).collect()
 }

@@ -54,7 +54,8 @@ pub(crate) fn trace<M: Adjacency + Positions>(
     let (start, sign) = first_contact(mesh, curve, convexity, patches, radius)?;
     let limit = 8.0 * curve.length(mesh) + 64.0 * radius.base;
     if !curve.closed {
-        return Ok(trace_open(mesh, patches, params, start, sign, limit, footing));
+        let ends = curve.ends(mesh).into_iter().map(|end| end.0).collect();
+        return Ok(trace_open(mesh, patches, params, &Way { start, sign, limit, ends }, footing));
     }
     let mut contacts = vec![start];
     let (mut here, mut travelled, mut stride) = (start, 0.0, step);
@@ -84,24 +85,37 @@ pub(crate) fn trace<M: Adjacency + Positions>(
     Err(Error::Astray { at: here.center, travelled, curve: curve.length(mesh) })
 }
 
-/// Rolls the ball both ways from `start`.
+/// What an open trace starts from, and where it may end.
+struct Way {
+    start: Contact,
+    /// Whether left × right runs along the curve or against it.
+    sign: f64,
+    /// Longest way in either direction.
+    limit: f64,
+    /// The curve's ends.
+    ends: Vec<DVec3>,
+}
+
+/// How far from a curve's end long strides stop, in radii: there feet outrun the ball or lag behind.
+const CAREFUL: f64 = 8.0;
+
+/// Rolls the ball both ways from the start.
 fn trace_open<M: Adjacency + Positions>(
     mesh: &M,
     patches: &[Patch; 2],
     params: &Params,
-    start: Contact,
-    sign: f64,
-    limit: f64,
+    Way { start, sign, limit, ends }: &Way,
     footing: impl Fn(&Contact) -> Footing,
 ) -> Trace {
-    let mut contacts = vec![start];
-    for sign in [-sign, sign] {
+    let careful = |ball: &Contact| ends.iter().any(|e| e.distance(ball.center) < CAREFUL * params.radius.base);
+    let mut contacts = vec![*start];
+    for sign in [-sign, *sign] {
         contacts.reverse();
         let (mut here, mut travelled, mut stride) = (contacts[contacts.len() - 1], 0.0, params.step);
         let most = contacts.len() as f64 + 4.0 * limit / params.step;
         // Past the curve's end there is nothing to demand, so whatever stops the ball ends the trace; whether it came far
         // enough is seen where the ends are made.
-        while travelled < limit && (contacts.len() as f64) < most {
+        while travelled < *limit && (contacts.len() as f64) < most {
             let Some(next) = stride_from(mesh, patches, params, &here, sign, &mut stride) else { break };
             match footing(&next) {
                 Footing::Firm => {}
@@ -116,7 +130,8 @@ fn trace_open<M: Adjacency + Positions>(
             travelled += next.center.distance(here.center);
             contacts.push(next);
             here = next;
-            stride = (1.6 * stride).min(params.longest.max(params.step));
+            let longest = if careful(&here) { params.step } else { params.longest.max(params.step) };
+            stride = (1.6 * stride).min(longest);
         }
     }
     Trace::Open(contacts)

@@ -1,19 +1,29 @@
 //! `blend`: rounds feature curves.
 
-use crate::args::Blend as Args;
+use crate::args::{Blend as Args, Target};
 use crate::failure::Failure;
+use crate::output::print;
 use crate::session::{Destination, Session, counts, joint_diagonal};
-use fusion::{features, round};
+use mesh_io::Format;
+use fusion::{blend, features, round};
+use serde_json::json;
 
-/// Blends the chosen curves and writes the result.
+/// Blends the chosen curves and writes the result, or tells how large a ball may be.
 pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
-    let destination = Destination::check(&args.target, session)?;
+    if args.max_radius {
+        return limit(session, args);
+    }
+    let (Some(output), Some(radius)) = (&args.output, args.radius) else {
+        return Err(Failure::usage("`blend` needs --radius R and -o OUTPUT, or --max-radius"));
+    };
+    let target = Target { output: output.clone(), to: args.to.clone(), origins: args.origins.clone() };
+    let destination = Destination::check(&target, session)?;
     let model = session.read(&args.input, &args.source)?;
     let models = std::slice::from_ref(&model);
     let params = round::Params {
         features: features::Params { angle: args.angle, ..features::Params::default() },
         near: args.near.clone(),
-        blend: args.rolling.with_radius(args.radius.resolve(joint_diagonal(models)))?,
+        blend: args.rolling.with_radius(radius.resolve(joint_diagonal(models)))?,
         format: destination.format,
     };
     let name = args.input.display();
@@ -21,4 +31,22 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         .map_err(|e| Failure::of(&e, e.to_string().replace("part 0 ", &format!("{name} "))))?;
     outcome.report.inputs = counts(std::slice::from_ref(&args.input), models);
     session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
+}
+
+/// Prints the largest radius that fits.
+fn limit(session: &Session, args: &Args) -> Result<(), Failure> {
+    let model = session.read(&args.input, &args.source)?;
+    let params = round::Params {
+        features: features::Params { angle: args.angle, ..features::Params::default() },
+        near: args.near.clone(),
+        blend: blend::Params::new(1.0),
+        format: Format::Obj,
+    };
+    let limit = fusion::round::max_radius(&model, &params, session.watch()).map_err(|e| Failure::of(&e, e.to_string()))?;
+    let at = limit.at.map(|p| p.to_array());
+    if args.json {
+        return print(&format!("{:#}\n", json!({ "max_radius": limit.radius, "limited_by": limit.what, "at": at })));
+    }
+    let place = at.map_or(String::new(), |[x, y, z]| format!(" at {x},{y},{z}"));
+    print(&format!("{}  (beyond it: {}{place})\n", limit.radius, limit.what))
 }

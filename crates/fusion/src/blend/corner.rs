@@ -81,7 +81,6 @@ pub(crate) fn set_back(
         let own = view.nearest(place);
         let reached = view.sample(own);
         if own == 0.0 && before.is_none() && after.is_none() && view.before_end(place) > 0.5 * reached.radius {
-            eprintln!("DBG corner {:?} at {place} darts {:?} dart {i} before_end {} r {} n {} ends {:?}", node.vertex, node.darts.iter().zip(&views).map(|(d,v)| (d.curve, d.end, v.rail.convexity, v.len())).collect::<Vec<_>>(), view.before_end(place), reached.radius, view.len(), view.raw(0).center);
             return Err(Trouble::at("the ball cannot roll on", vec![reached.center]));
         }
         let needed = [before, after].map(|at| at.unwrap_or(own)).into_iter().fold(0.0, f64::max);

@@ -32,6 +32,8 @@ pub(crate) struct Ends<'a> {
 
 /// Share of the base radius below which a ball that runs out is replaced by the tip.
 const SMALLEST: f64 = 0.1;
+/// How far from the node the tip is, as a share of the base radius.
+const TIP_GAP: f64 = 0.05;
 
 impl Ends<'_> {
     /// Cuts every rail to length. A closed rail that is not among `kept` is left out.
@@ -92,6 +94,17 @@ impl Ends<'_> {
         let first = cuts[0].at;
         let last = (n - 1) as f64 - cuts[1].at;
         let view = Outward { rail, end: 0 };
+        if let (Some(from), Some(to)) = (cuts[0].last, cuts[1].last)
+            && last - first <= 1e-6
+        {
+            // The balls of both corners are all there is, if they have not passed each other.
+            let middle = (0.5 * (first + last)).clamp(0.0, (n - 2) as f64) as usize;
+            let along = rail.samples[middle + 1].center - rail.samples[middle].center;
+            if (to.center - from.center).dot(along) > 0.0 {
+                let [a, b] = cuts.map(|c| c.ending);
+                return Ok(Stretch { rail: Rail { samples: vec![from, to], ..rail.clone() }, endings: [a, b] });
+            }
+        }
         if !(last - first > 1e-6) {
             let middle = view.sample((0.5 * (first + last)).clamp(0.0, (n - 1) as f64)).center;
             return Err(Trouble::at("the blends at both ends of a curve leave no room between them", vec![middle]));
@@ -135,7 +148,12 @@ impl Ends<'_> {
         if view.raw(at).radius > 0.5 * full {
             return Err(stuck(view.raw(at).center));
         }
-        Ok(Cut { at: at as f64, last: None, ending: Ending::Tip(node.vertex) })
+        // Just short of the node, where another curve may run out too.
+        let tip = dart.halfedge(self.mesh, self.curves).map_or(SurfacePoint::Vertex(node.vertex), |halfedge| {
+            let length = self.mesh.position(self.mesh.head(halfedge)).distance(place);
+            SurfacePoint::Edge { halfedge, t: (TIP_GAP * full / length.max(f64::MIN_POSITIVE)).min(0.3) }
+        });
+        Ok(Cut { at: at as f64, last: None, ending: Ending::Tip(tip) })
     }
 
     /// Ends a rail at the surface ahead of the node: the last profile is pushed on along the spine until it lies there.

@@ -3,6 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `mod.rs` | the stages, and the loop that makes the ball smaller where it does not fit |
+//! | `limit.rs` | the largest radius that fits |
 //! | `network.rs` | the nodes at which open curves meet or end |
 //! | `ending.rs` | rails cut to length there: set back, run out, or stopped at the surface ahead |
 //! | `corner.rs` | how far curves that meet are set back, and the ball that touches all sides |
@@ -19,6 +20,7 @@ mod corner;
 mod ending;
 mod fill;
 pub mod keep;
+mod limit;
 mod linkage;
 mod network;
 mod plate;
@@ -30,6 +32,7 @@ mod trouble;
 use glam::DVec3;
 use ending::Ends;
 use fill::fill;
+pub use limit::{Limit, max_radius};
 use linkage::cut_linkages;
 use mesh_core::{
     Adjacency, Cancelled, Connected, FaceId, Faces, NotManifold, Origins, Positions, TriMesh, VertexId, Watch,
@@ -185,10 +188,6 @@ pub fn blend(
         Err(refusal) => refusal,
     };
     match refusal {
-        Trouble::Cancelled(c) => Err(c.into()),
-        Trouble::Embed(e) => Err(e.into()),
-        Trouble::Spine(e) => Err(e.into()),
-        Trouble::NoStop(_) => Err(Error::NoCurves),
         Trouble::Places { what, places } => {
             let mut workable = None;
             for halvings in 1..=3 {
@@ -205,6 +204,7 @@ pub fn blend(
             let at = places.first().copied().unwrap_or(DVec3::ZERO);
             Err(Error::DoesNotFit { what, at, radius: params.radius, workable })
         }
+        other => Err(other.into_error(params.radius)),
     }
 }
 
@@ -242,7 +242,6 @@ fn attempt(
             }
             continue;
         }
-        if std::env::var("DBGT").is_ok() { if let Trouble::Places { what, places } = &trouble { eprintln!("DBG round {round} r {} {what} {} at {:?}", params.radius, places.len(), &places[..places.len().min(6)]); } }
         let Trouble::Places { ref places, .. } = trouble else { return Err(trouble) };
         if params.overlap == Overlap::Error && round >= 2 || round >= rounds || !mends.add(places, params.overlap) {
             return Err(trouble);
@@ -419,7 +418,6 @@ fn distinct(rails: &[Option<Rail>], step: f64) -> Vec<bool> {
 /// The result must be a manifold, and the blend must not meet itself or anything else.
 fn check(sewn: &sew::Sewn, watch: &Watch) -> Result<(), Trouble> {
     if let Err(e) = Connected::new(&sewn.mesh) {
-        if std::env::var("DBGOUT").is_ok() { eprintln!("{e:?}"); let mut s = String::new(); for p in &sewn.mesh.positions { s += &format!("v {} {} {}\n", p.x, p.y, p.z); } for f in &sewn.mesh.faces { s += &format!("f {} {} {}\n", f[0].0+1, f[1].0+1, f[2].0+1); } std::fs::write("/tmp/lead/c/dbg.obj", s).unwrap(); }
         return Err(Trouble::at("the blend pinches", e.place.into_iter().collect()));
     }
     let new: Vec<FaceId> = (sewn.first_new_face.0..sewn.mesh.face_count() as u32).map(FaceId).collect();

@@ -25,7 +25,8 @@ impl Dart {
         1 - self.end
     }
 
-    fn halfedge(self, mesh: &Connected<TriMesh>, curves: &[BlendCurve]) -> Option<HalfedgeId> {
+    /// Its first halfedge, leaving the node.
+    pub fn halfedge(self, mesh: &Connected<TriMesh>, curves: &[BlendCurve]) -> Option<HalfedgeId> {
         let chain = &curves[self.curve].halfedges;
         if self.end == 0 { chain.first().copied() } else { chain.last().and_then(|&h| mesh.twin(h)) }
     }

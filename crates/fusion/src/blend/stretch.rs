@@ -1,7 +1,7 @@
 //! Rails cut to length: how each begins and ends.
 
 use glam::DVec3;
-use mesh_core::{SurfacePoint, VertexId};
+use mesh_core::SurfacePoint;
 use spine::{Convexity, Rail, Sample};
 
 /// What lies beyond the last ball of a stretch.
@@ -13,8 +13,8 @@ pub(crate) enum Ending {
     Corner,
     /// Points with normals of the surface at which the blend stops, from its left side to its right one.
     Stop(Vec<(SurfacePoint, DVec3)>),
-    /// A vertex in which both linkages end.
-    Tip(VertexId),
+    /// A point of the curve in which both linkages end.
+    Tip(SurfacePoint),
 }
 
 /// A rail cut to length.
@@ -38,7 +38,7 @@ impl Stretch {
         matches!(self.endings[end], Ending::Stop(_) | Ending::Tip(_))
     }
 
-    /// The ball at a station, or else how the stretch ends there.
+    /// The ball at a station, or else how the stretch ends there: a stop or a tip.
     pub fn station(&self, k: usize) -> Result<&Sample, &Ending> {
         match k.checked_sub(self.before()) {
             None => Err(&self.endings[0]),
@@ -52,8 +52,12 @@ impl Stretch {
         match self.station(k) {
             Ok(s) => (s.feet[side].surface_point(mesh), radial(s)),
             Err(Ending::Stop(points)) => points[if side == 0 { 0 } else { points.len() - 1 }],
-            Err(Ending::Tip(v)) => (SurfacePoint::Vertex(*v), radial(self.last_two(usize::from(k > 0)).0)),
-            Err(Ending::Joined | Ending::Corner) => unreachable!("only endings with a profile of their own are stations"),
+            Err(Ending::Tip(point)) => (*point, radial(self.last_two(usize::from(k > 0)).0)),
+            // Not a station; the last ball's foot is the nearest thing to one.
+            Err(Ending::Joined | Ending::Corner) => {
+                let last = self.last_two(usize::from(k > 0)).0;
+                (last.feet[side].surface_point(mesh), radial(last))
+            }
         }
     }
 

@@ -1,5 +1,6 @@
 //! What goes wrong while a blend is made, and where: the places at which the ball is then made smaller.
 
+use super::Error;
 use glam::DVec3;
 use mesh_core::Cancelled;
 use tri_intersect::EmbedError;
@@ -25,6 +26,20 @@ pub(crate) enum Trouble {
 }
 
 impl Trouble {
+    /// For the caller, if no smaller radius is to be looked for.
+    pub fn into_error(self, radius: f64) -> Error {
+        match self {
+            Self::Places { what, places } => {
+                Error::DoesNotFit { what, at: places.first().copied().unwrap_or(DVec3::ZERO), radius, workable: None }
+            }
+            // Every such node was made to run out, so this is not reached with any left.
+            Self::NoStop(_) => Error::NoCurves,
+            Self::Embed(e) => e.into(),
+            Self::Spine(e) => e.into(),
+            Self::Cancelled(c) => c.into(),
+        }
+    }
+
     pub fn at(what: &'static str, places: Vec<DVec3>) -> Self {
         Self::Places { what, places }
     }

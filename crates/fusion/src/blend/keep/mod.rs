@@ -90,6 +90,7 @@ pub fn blend(
         mesh: moved,
         origins,
         strips: rails.len(),
+        corners: 0,
         residual,
         shrunk: Vec::new(),
         full_share: 1.0,

@@ -1,0 +1,117 @@
+//! Open curves: corners, stops and run-outs, against solids whose rounding is known.
+
+use fusion::blend::{Blended, Overlap, Params, blend, max_radius};
+use fusion::features::{self, feature_curves};
+use glam::DVec3;
+use mesh_core::{Connected, Faces, Positions, TriMesh, VertexId, VertexOrigin, Watch, shapes};
+use spine::BlendCurve;
+use std::f64::consts::PI;
+
+fn curves(mesh: &Connected<TriMesh>) -> Vec<BlendCurve> {
+    let found = feature_curves(mesh, &features::Params::default());
+    found.into_iter().map(|c| BlendCurve { halfedges: c.halfedges, closed: c.closed }).collect()
+}
+
+fn rounded(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params) -> Blended {
+    let params = Params { overlap: Overlap::Error, ..params.clone() };
+    let done = blend(mesh, curves, &params, &Watch::default()).unwrap_or_else(|e| panic!("{e}"));
+    let found = tri_intersect::self_intersections(&done.mesh, &Watch::default()).unwrap();
+    assert!(found.is_empty(), "{found:?}");
+    let connected = Connected::new(&done.mesh).unwrap();
+    assert!(mesh_core::boundary_loops(&connected).is_empty());
+    done
+}
+
+fn volume(mesh: &TriMesh) -> f64 {
+    mesh.faces.iter().map(|f| f.map(|v| mesh.position(v))).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
+}
+
+/// Signed distance of a point to the cuboid of half sides `half` rounded with radius `r`, centred on the origin.
+fn from_rounded_box(p: DVec3, half: DVec3, r: f64) -> f64 {
+    let q = p.abs() - (half - DVec3::splat(r));
+    q.max(DVec3::ZERO).length() + q.max_element().min(0.0) - r
+}
+
+#[test]
+fn a_cube_with_all_its_edges_blended_is_the_rounded_cube() {
+    let mesh = Connected::new(shapes::cuboid(DVec3::ONE)).unwrap();
+    for r in [0.02, 0.1, 0.3] {
+        let done = rounded(&mesh, &curves(&mesh), &Params::new(r));
+        assert_eq!((done.strips, done.corners), (12, 8));
+        let worst = done.mesh.positions.iter().map(|&p| from_rounded_box(p, DVec3::splat(0.5), r).abs()).fold(0.0, f64::max);
+        assert!(worst <= 1e-9, "{worst} off with radius {r}");
+    }
+    // Volume: faces, edges and corners put together.
+    let (r, fine) = (0.1, Params { tolerance: 1e-3, ..Params::new(0.1) });
+    let inner: f64 = 1.0 - 2.0 * r;
+    let exact = inner.powi(3) + 6.0 * inner * inner * r + 3.0 * inner * PI * r * r + 4.0 / 3.0 * PI * r.powi(3);
+    let off = (volume(&rounded(&mesh, &curves(&mesh), &fine).mesh) - exact).abs() / exact;
+    assert!(off < 1e-3, "{off}");
+}
+
+#[test]
+fn the_largest_radius_of_a_cube_is_half_its_side() {
+    let mesh = Connected::new(shapes::cuboid(DVec3::ONE)).unwrap();
+    let limit = max_radius(&mesh, &curves(&mesh), &Params::new(1.0), &Watch::default()).unwrap();
+    assert!(limit.radius > 0.49 && limit.radius <= 0.5 && limit.at.is_some(), "{limit:?}");
+    let fits = |r: f64| {
+        let params = Params { overlap: Overlap::Error, ..Params::new(r) };
+        blend(&mesh, &curves(&mesh), &params, &Watch::default()).is_ok()
+    };
+    assert!(fits(0.99 * limit.radius) && !fits(1.02 * limit.radius));
+}
+
+#[test]
+fn one_edge_stops_in_the_faces_at_its_ends() {
+    let mesh = Connected::new(shapes::cuboid(DVec3::ONE)).unwrap();
+    let r = 0.2;
+    let done = rounded(&mesh, &curves(&mesh)[..1], &Params { tolerance: 1e-4, ..Params::new(r) });
+    let exact = 1.0 - (1.0 - PI / 4.0) * r * r;
+    let got = volume(&done.mesh);
+    // Inscribed chords take up to two thirds of their sagitta off along the arc.
+    assert!(got <= exact + 1e-12 && got > exact - r * 1e-4 * 0.5 * PI * r, "{got} {exact}");
+    assert!(done.mesh.positions.iter().all(|p| p.abs().max_element() <= 0.5 + 1e-12));
+}
+
+/// Two convex edges and a concave one meet in the inner corners.
+#[test]
+fn an_l_bracket_has_fair_mixed_corners() {
+    let outline = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)];
+    let positions = [0.0, 1.0].iter().flat_map(|&z| outline.map(|(x, y)| DVec3::new(x, y, z))).collect();
+    let mut faces: Vec<[u32; 3]> = (0..6).flat_map(|i| {
+        let j = (i + 1) % 6;
+        [[i, j, 6 + j], [i, 6 + j, 6 + i]]
+    }).collect();
+    for [a, b, c] in [[0, 1, 2], [0, 2, 3], [0, 3, 5], [3, 4, 5]] {
+        faces.extend([[a, c, b], [6 + a, 6 + b, 6 + c]]);
+    }
+    let mesh = TriMesh { positions, faces: faces.into_iter().map(|f| f.map(VertexId)).collect() };
+    let mesh = Connected::new(mesh).unwrap();
+    let r = 0.15;
+    let done = rounded(&mesh, &curves(&mesh), &Params::new(r));
+    assert_eq!((done.strips, done.corners), (18, 12));
+    let inside = |p: &DVec3| p.min_element() > -1e-9 && p.x < 2.0 + 1e-9 && p.y < 2.0 + 1e-9 && p.z < 1.0 + 1e-9;
+    assert!(done.mesh.positions.iter().all(inside));
+    // The bracket is its own mirror image in x = y; so is the volume of either half.
+    let connected = Connected::new(&done.mesh).unwrap();
+    let sharpest = (0..3 * done.mesh.face_count())
+        .filter_map(|h| mesh_core::dihedral_angle(&connected, mesh_core::HalfedgeId::from(h)))
+        .fold(0.0, |a: f64, b| a.max(b.abs()));
+    assert!(sharpest.to_degrees() < 30.0, "{}", sharpest.to_degrees());
+}
+
+#[test]
+fn half_a_rim_runs_out_at_both_ends() {
+    let mesh = Connected::new(shapes::cylinder(1.0, 2.0, 64, 16)).unwrap();
+    let rim = curves(&mesh).remove(0);
+    let half = BlendCurve { halfedges: rim.halfedges[..32].to_vec(), closed: false };
+    let done = rounded(&mesh, &[half.clone()], &Params::new(0.1));
+    assert_eq!((done.strips, done.corners), (1, 0));
+    // What is farther than two radii from the curve keeps its bits.
+    let near = |p: DVec3| half.points(&mesh).iter().any(|q| q.distance(p) < 0.3);
+    let kept: std::collections::HashSet<_> = done.origins.vertices.as_slice().iter().filter_map(|o| match o {
+        VertexOrigin::Input { vertex, .. } => Some(*vertex),
+        _ => None,
+    }).collect();
+    assert!(mesh.vertex_ids().all(|v| near(mesh.position(v)) || kept.contains(&v)));
+}
