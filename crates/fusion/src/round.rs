@@ -1,8 +1,8 @@
 //! Rounds the feature curves of one mesh.
 
+use crate::blend::{self, Limit};
 use crate::features::{self, Convexity, feature_curves, nearest_curve};
 use crate::outcome::{Outcome, account, finish, surviving};
-use crate::blend::{self, Limit};
 use crate::{Counts, Error, Report};
 use glam::DVec3;
 use mesh_core::{Adjacency, Connected, Faces, HalfedgeId, TriMesh, VertexId, Watch};
@@ -66,14 +66,16 @@ fn choose(mesh: &Connected<TriMesh>, params: &Params) -> Result<Vec<BlendCurve>,
     }
     chosen.sort_unstable();
     chosen.dedup();
-    let curve = |id: usize| (all[id].convexity, BlendCurve { halfedges: all[id].halfedges.clone(), closed: all[id].closed });
+    let curve =
+        |id: usize| (all[id].convexity, BlendCurve { halfedges: all[id].halfedges.clone(), closed: all[id].closed });
     Ok(joined(mesh, chosen.into_iter().map(curve).collect()))
 }
 
 /// Curves of one convexity joined where just two of those chosen meet: nothing else sets them apart there.
 fn joined(mesh: &Connected<TriMesh>, mut curves: Vec<(Convexity, BlendCurve)>) -> Vec<BlendCurve> {
     let mut at: BTreeMap<VertexId, Vec<usize>> = BTreeMap::new();
-    let ends = |c: &BlendCurve| c.halfedges.first().zip(c.halfedges.last()).map(|(&f, &l)| [mesh.tail(f), mesh.head(l)]);
+    let ends =
+        |c: &BlendCurve| c.halfedges.first().zip(c.halfedges.last()).map(|(&f, &l)| [mesh.tail(f), mesh.head(l)]);
     for (i, (_, curve)) in curves.iter().enumerate().filter(|(_, c)| !c.1.closed) {
         ends(curve).into_iter().flatten().for_each(|v| at.entry(v).or_default().push(i));
     }

@@ -38,7 +38,8 @@ fn a_cube_with_all_its_edges_blended_is_the_rounded_cube() {
     for r in [0.02, 0.1, 0.3] {
         let done = rounded(&mesh, &curves(&mesh), &Params::new(r));
         assert_eq!((done.strips, done.corners), (12, 8));
-        let worst = done.mesh.positions.iter().map(|&p| from_rounded_box(p, DVec3::splat(0.5), r).abs()).fold(0.0, f64::max);
+        let worst =
+            done.mesh.positions.iter().map(|&p| from_rounded_box(p, DVec3::splat(0.5), r).abs()).fold(0.0, f64::max);
         assert!(worst <= 1e-9, "{worst} off with radius {r}");
     }
     // Volume: faces, edges and corners put together.
@@ -78,10 +79,12 @@ fn one_edge_stops_in_the_faces_at_its_ends() {
 fn an_l_bracket_has_fair_mixed_corners() {
     let outline = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)];
     let positions = [0.0, 1.0].iter().flat_map(|&z| outline.map(|(x, y)| DVec3::new(x, y, z))).collect();
-    let mut faces: Vec<[u32; 3]> = (0..6).flat_map(|i| {
-        let j = (i + 1) % 6;
-        [[i, j, 6 + j], [i, 6 + j, 6 + i]]
-    }).collect();
+    let mut faces: Vec<[u32; 3]> = (0..6)
+        .flat_map(|i| {
+            let j = (i + 1) % 6;
+            [[i, j, 6 + j], [i, 6 + j, 6 + i]]
+        })
+        .collect();
     for [a, b, c] in [[0, 1, 2], [0, 2, 3], [0, 3, 5], [3, 4, 5]] {
         faces.extend([[a, c, b], [6 + a, 6 + b, 6 + c]]);
     }
@@ -109,9 +112,15 @@ fn half_a_rim_runs_out_at_both_ends() {
     assert_eq!((done.strips, done.corners), (1, 0));
     // What is farther than two radii from the curve keeps its bits.
     let near = |p: DVec3| half.points(&mesh).iter().any(|q| q.distance(p) < 0.3);
-    let kept: std::collections::HashSet<_> = done.origins.vertices.as_slice().iter().filter_map(|o| match o {
-        VertexOrigin::Input { vertex, .. } => Some(*vertex),
-        _ => None,
-    }).collect();
+    let kept: std::collections::HashSet<_> = done
+        .origins
+        .vertices
+        .as_slice()
+        .iter()
+        .filter_map(|o| match o {
+            VertexOrigin::Input { vertex, .. } => Some(*vertex),
+            _ => None,
+        })
+        .collect();
     assert!(mesh.vertex_ids().all(|v| near(mesh.position(v)) || kept.contains(&v)));
 }

@@ -239,7 +239,8 @@ impl Metric {
         let reach = (3.0 * sigma).min(0.4 * self.total).min(to_end * (1.0 + 1e-9));
         let least = 1e-6 * self.total / n as f64;
         let stretch = |j: usize| {
-            let (before, after) = if self.closed { ((j + n - 1) % n, (j + 1) % n) } else { (j.saturating_sub(1), (j + 1).min(n - 1)) };
+            let (before, after) =
+                if self.closed { ((j + n - 1) % n, (j + 1) % n) } else { (j.saturating_sub(1), (j + 1).min(n - 1)) };
             self.ahead(before, after).max(least)
         };
         let (mut sum, mut weight) = (stretch(i) * points[i], stretch(i));

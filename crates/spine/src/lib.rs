@@ -262,7 +262,9 @@ pub fn roll<M: Adjacency + Positions + Sync>(
             let beyond = |(at, out): &(DVec3, DVec3)| near(*at).then(|| (c.center - *at).dot(*out));
             let past = ends.iter().filter_map(beyond).fold(f64::NEG_INFINITY, f64::max);
             let at_rim = |s: usize| on_rim(mesh, &patches[s], &barriers, &c.feet[s]);
-            if past > alpha * radius.base || (0..2).any(|s| on_edge(mesh, &c.feet[s], at_end) || past > 0.0 && at_rim(s)) {
+            if past > alpha * radius.base
+                || (0..2).any(|s| on_edge(mesh, &c.feet[s], at_end) || past > 0.0 && at_rim(s))
+            {
                 Footing::Over
             } else if (0..2).any(|s| on_edge(mesh, &c.feet[s], on_curve) && tips(mesh, convexity, c, s)) {
                 Footing::Tipping
@@ -296,14 +298,7 @@ pub fn roll<M: Adjacency + Positions + Sync>(
         let samples = regress::regress(&samples, closed, convexity, 3.0 * radius.base);
         let samples = fair::fill_gaps(mesh, &patches, &samples, closed, gap);
         let residual = contacts.iter().map(|c| c.residual).fold(filled, f64::max);
-        return Ok(Rail {
-            samples,
-            closed,
-            convexity,
-            residual,
-            alpha,
-            patches: Arc::new(patches),
-        });
+        return Ok(Rail { samples, closed, convexity, residual, alpha, patches: Arc::new(patches) });
     }
 }
 
@@ -338,9 +333,8 @@ fn on_rim<M: Adjacency>(mesh: &M, patch: &Patch, barriers: &HashSet<EdgeId>, foo
 
 /// Whether a foot lies on an edge of a kind.
 fn on_edge<M: Adjacency>(mesh: &M, foot: &mesh_query::ClosestPoint, kind: impl Fn(EdgeId) -> bool) -> bool {
-    (0..3).any(|corner| {
-        foot.barycentric[(corner + 2) % 3] == 0.0 && kind(mesh.edge(HalfedgeId::new(foot.face, corner)))
-    })
+    (0..3)
+        .any(|corner| foot.barycentric[(corner + 2) % 3] == 0.0 && kind(mesh.edge(HalfedgeId::new(foot.face, corner))))
 }
 
 /// Whether the ball has left the side that a patch faces: with its foot on a blend curve, it tips over that.

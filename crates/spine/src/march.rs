@@ -5,11 +5,11 @@
 //! not at all, the trace just goes on, and where the ball is blocked by a third contact it turns there, as a real
 //! ball does.
 
-use crate::{Error, Params};
 use crate::contact::Contact;
 use crate::curve::{BlendCurve, Convexity, face_normal};
 use crate::patch::Patch;
 use crate::radius::RadiusField;
+use crate::{Error, Params};
 use glam::DVec3;
 use mesh_core::{Adjacency, HalfedgeId, Positions};
 

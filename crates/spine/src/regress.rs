@@ -29,7 +29,9 @@ pub(crate) fn regress(samples: &[Sample], closed: bool, convexity: Convexity, lo
         if dropped[i] || dropped[next] || advances(i, next) {
             continue;
         }
-        if let Some((back, ahead)) = bridge(samples, closed, i, longest, |a, b| !dropped[a] && !dropped[b] && advances(a, b)) {
+        if let Some((back, ahead)) =
+            bridge(samples, closed, i, longest, |a, b| !dropped[a] && !dropped[b] && advances(a, b))
+        {
             for k in 1..=back + ahead {
                 dropped[(i + n - back + k) % n] = true;
             }

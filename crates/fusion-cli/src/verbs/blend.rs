@@ -4,8 +4,8 @@ use crate::args::{Blend as Args, Target};
 use crate::failure::Failure;
 use crate::output::print;
 use crate::session::{Destination, Session, counts, joint_diagonal};
-use mesh_io::Format;
 use fusion::{blend, features, round};
+use mesh_io::Format;
 use serde_json::json;
 
 /// Blends the chosen curves and writes the result, or tells how large a ball may be.
@@ -42,7 +42,8 @@ fn limit(session: &Session, args: &Args) -> Result<(), Failure> {
         blend: blend::Params::new(1.0),
         format: Format::Obj,
     };
-    let limit = fusion::round::max_radius(&model, &params, session.watch()).map_err(|e| Failure::of(&e, e.to_string()))?;
+    let limit =
+        fusion::round::max_radius(&model, &params, session.watch()).map_err(|e| Failure::of(&e, e.to_string()))?;
     let at = limit.at.map(|p| p.to_array());
     if args.json {
         return print(&format!("{:#}\n", json!({ "max_radius": limit.radius, "limited_by": limit.what, "at": at })));

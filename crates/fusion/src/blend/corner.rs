@@ -51,7 +51,9 @@ pub(crate) fn set_back(
         .ok_or_else(missing)?;
     let k = views.len();
     let crossings: Vec<Option<Meeting>> = (0..k)
-        .map(|i| meeting(&views[i], node.darts[i].end, &views[(i + 1) % k], node.darts[(i + 1) % k].right(), place, step))
+        .map(|i| {
+            meeting(&views[i], node.darts[i].end, &views[(i + 1) % k], node.darts[(i + 1) % k].right(), place, step)
+        })
         .collect();
     let alike = views.iter().all(|v| v.rail.convexity == views[0].rail.convexity);
     if alike && let Some(found) = crossings.iter().copied().collect::<Option<Vec<Meeting>>>() {

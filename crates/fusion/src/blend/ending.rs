@@ -228,7 +228,11 @@ impl Ends<'_> {
             for corner in 0..3 {
                 let h = HalfedgeId::new(face, corner);
                 let Some(t) = mesh.twin(h).filter(|_| !walls.contains(&mesh.edge(h))) else { continue };
-                let near = mesh_query::closest_point_on_triangle(place, mesh.corners(t.face()).map(|v| mesh.position(v))).0.distance(place) < reach;
+                let near =
+                    mesh_query::closest_point_on_triangle(place, mesh.corners(t.face()).map(|v| mesh.position(v)))
+                        .0
+                        .distance(place)
+                        < reach;
                 if near && seen.insert(t.face()) {
                     faces.push(t.face());
                 }

@@ -137,19 +137,20 @@ pub(crate) fn cut_linkages<M: Adjacency + Positions + Sync>(
         curves.push(curve);
         places.push(at);
     }
-    let embedded = embed(mesh, &curves, &EmbedParams { snap: (2.5 * snap).clamp(0.01, 0.1), reach: snap * radius }, watch)
-        .map_err(|e| match e {
-            EmbedError::Crossings(found) => Trouble::at("linkages cross", found.iter().map(|c| c.place).collect()),
-            EmbedError::Apart { place, .. } | EmbedError::TooSmall { place, .. } => {
-                Trouble::at("a linkage cannot be cut into the mesh", vec![place])
-            }
-            EmbedError::Collapsed { curve } => {
-                let at = loops[curve].points.first().map(|p| p.0.position(mesh));
-                Trouble::at("a linkage shrinks to a point", at.into_iter().collect())
-            }
-            EmbedError::Cancelled(c) => Trouble::Cancelled(c),
-            e @ (EmbedError::BadPoint { .. } | EmbedError::TooMany) => Trouble::Embed(e),
-        })?;
+    let embedded =
+        embed(mesh, &curves, &EmbedParams { snap: (2.5 * snap).clamp(0.01, 0.1), reach: snap * radius }, watch)
+            .map_err(|e| match e {
+                EmbedError::Crossings(found) => Trouble::at("linkages cross", found.iter().map(|c| c.place).collect()),
+                EmbedError::Apart { place, .. } | EmbedError::TooSmall { place, .. } => {
+                    Trouble::at("a linkage cannot be cut into the mesh", vec![place])
+                }
+                EmbedError::Collapsed { curve } => {
+                    let at = loops[curve].points.first().map(|p| p.0.position(mesh));
+                    Trouble::at("a linkage shrinks to a point", at.into_iter().collect())
+                }
+                EmbedError::Cancelled(c) => Trouble::Cancelled(c),
+                e @ (EmbedError::BadPoint { .. } | EmbedError::TooMany) => Trouble::Embed(e),
+            })?;
     let mut opened = Opened {
         linkages: vec![[Linkage::default(), Linkage::default()]; layout.stretches.len()],
         joints: layout.corners.iter().map(|c| vec![Vec::new(); c.darts.len()]).collect(),

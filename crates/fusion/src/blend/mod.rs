@@ -29,9 +29,9 @@ mod stretch;
 mod strip;
 mod trouble;
 
-use glam::DVec3;
 use ending::Ends;
 use fill::fill;
+use glam::DVec3;
 pub use limit::{Limit, max_radius};
 use linkage::cut_linkages;
 use mesh_core::{
@@ -376,7 +376,8 @@ fn assemble(
     }
     let mut patches = Vec::with_capacity(layout.corners.len());
     for (corner, joints) in layout.corners.iter().zip(&opened.joints) {
-        let position = |v: VertexId| if v.0 < first_new { cut.position(v) } else { new_points[(v.0 - first_new) as usize] };
+        let position =
+            |v: VertexId| if v.0 < first_new { cut.position(v) } else { new_points[(v.0 - first_new) as usize] };
         let patch = fill(corner, joints, &layout.stretches, &strips, first_new + new_points.len() as u32, position)?;
         new_points.extend_from_slice(&patch.points);
         patches.push(patch);

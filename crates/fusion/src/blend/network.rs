@@ -1,7 +1,9 @@
 //! How blend curves hang together: the nodes at which open ones meet or end, and what is done there.
 
 use glam::DVec3;
-use mesh_core::{Adjacency, Connected, EdgeId, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, dihedral_angle};
+use mesh_core::{
+    Adjacency, Connected, EdgeId, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, dihedral_angle,
+};
 use spine::BlendCurve;
 use std::collections::BTreeMap;
 
