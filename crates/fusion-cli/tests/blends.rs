@@ -168,10 +168,8 @@ fn wrong_options_say_what_is_right() {
     let bench = bench();
     for (options, words) in [
         ("--profile round", "conic=W"),
-        ("--profile curve.json", "conic=W"),
         ("--profile conic=-1", "conic=W"),
-        ("--surface keep", "stitch is what this version has"),
-        ("--surface auto", "stitch is what this version has"),
+        ("--surface wrap", "a surface is"),
         ("--spine paper", "offset"),
         ("--overlap trim", "shrink"),
         ("--alpha 0", "from 1 to 16"),

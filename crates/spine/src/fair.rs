@@ -54,8 +54,8 @@ impl Sample {
 pub(crate) struct Fairing<'a> {
     /// Standard deviation of the kernel in facet lengths, at most half the radius.
     pub fairness: f64,
-    /// Largest distance left between neighbouring feet, in model units.
-    pub gap: f64,
+    /// Largest distance left between neighbouring feet, in model units, and the longest step that the ball itself takes.
+    pub gaps: [f64; 2],
     /// Where the kernel is wider.
     pub softenings: &'a [Softening],
     /// Whether the last ball is next to the first.
@@ -68,9 +68,9 @@ pub(crate) fn fair<M: Adjacency + Positions + Sync>(
     patches: &[Patch; 2],
     radius: &RadiusField,
     contacts: &[Contact],
-    Fairing { fairness, gap, softenings, closed }: Fairing<'_>,
+    Fairing { fairness, gaps, softenings, closed }: Fairing<'_>,
 ) -> (Vec<Sample>, f64) {
-    let (raw, residual) = fill_jumps(mesh, patches, radius, contacts, closed, gap);
+    let (raw, residual) = fill_jumps(mesh, patches, radius, contacts, closed, gaps);
     let metric = Metric::of(&raw, closed);
     let points: [Vec<DVec3>; 2] = [0, 1].map(|side| raw.iter().map(|s| s.feet[side].point).collect());
     let centers: Vec<DVec3> = raw.iter().map(|s| s.center).collect();
@@ -128,7 +128,7 @@ fn fill_jumps<M: Adjacency + Positions>(
     radius: &RadiusField,
     contacts: &[Contact],
     closed: bool,
-    gap: f64,
+    [gap, longest]: [f64; 2],
 ) -> (Vec<Sample>, f64) {
     let mut residual = 0.0f64;
     let between = |here: &Sample, next: &Sample, t: f64| {
@@ -145,7 +145,7 @@ fn fill_jumps<M: Adjacency + Positions>(
         Some(Sample { center: ball.center, radius: ball.radius, feet })
     };
     let samples: Vec<Sample> = contacts.iter().copied().map(Sample::from).collect();
-    let filled = subdivide(&samples, closed, gap, between);
+    let filled = subdivide(&samples, closed, [gap, longest], between);
     (filled, residual)
 }
 
@@ -155,23 +155,23 @@ pub(crate) fn fill_gaps<M: Adjacency + Positions>(
     patches: &[Patch; 2],
     samples: &[Sample],
     closed: bool,
-    gap: f64,
+    gaps: [f64; 2],
 ) -> Vec<Sample> {
-    subdivide(samples, closed, gap, |here, next, t| walk(mesh, patches, here, next, t))
+    subdivide(samples, closed, gaps, |here, next, t| walk(mesh, patches, here, next, t))
 }
 
 /// Puts what `between` makes into every stretch longer than `gap`.
 fn subdivide(
     samples: &[Sample],
     closed: bool,
-    gap: f64,
+    [gap, longest]: [f64; 2],
     mut between: impl FnMut(&Sample, &Sample, f64) -> Option<Sample>,
 ) -> Vec<Sample> {
     let mut filled = Vec::with_capacity(samples.len());
     for (here, next) in pairs(samples, closed) {
         filled.push(*here);
         // Where the ball itself goes far, it goes straight.
-        let gap = gap.max(1.5 * here.center.distance(next.center));
+        let gap = gap.max(1.5 * here.center.distance(next.center).min(longest));
         // A jump is never longer than a few diameters, so the count is bounded.
         let pieces = (here.advance(next) / gap).ceil().clamp(1.0, 256.0) as u32;
         filled.extend((1..pieces).filter_map(|k| between(here, next, f64::from(k) / f64::from(pieces))));

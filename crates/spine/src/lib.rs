@@ -292,11 +292,11 @@ pub fn roll<M: Adjacency + Positions + Sync>(
         if let [only] = contacts[..] {
             return Err(Error::Stuck { at: only.center, radius: only.radius, wanted: radius.base });
         }
-        let gap = 1.5 * params.step;
-        let fairing = fair::Fairing { fairness: params.fairness, gap, softenings: &params.softenings, closed };
+        let gaps = [1.5 * params.step, if params.longest > params.step { params.longest } else { 0.0 }];
+        let fairing = fair::Fairing { fairness: params.fairness, gaps, softenings: &params.softenings, closed };
         let (samples, filled) = fair::fair(mesh, &patches, radius, &contacts, fairing);
         let samples = regress::regress(&samples, closed, convexity, 3.0 * radius.base);
-        let samples = fair::fill_gaps(mesh, &patches, &samples, closed, gap);
+        let samples = fair::fill_gaps(mesh, &patches, &samples, closed, gaps);
         let residual = contacts.iter().map(|c| c.residual).fold(filled, f64::max);
         return Ok(Rail { samples, closed, convexity, residual, alpha, patches: Arc::new(patches) });
     }

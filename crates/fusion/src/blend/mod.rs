@@ -292,7 +292,11 @@ fn roll_missing(
         alpha: params.alpha,
         solver: params.solver,
         step,
-        longest: (curves[curve].length(mesh) / 64.0).clamp(step, (4.0 * params.radius).max(step)),
+        longest: if curves[curve].closed {
+            step
+        } else {
+            (curves[curve].length(mesh) / 64.0).clamp(step, (4.0 * params.radius).max(step))
+        },
         sagitta: 0.2 * params.tolerance,
         softenings: mends.softenings.clone(),
         ..spine::Params::new(params.radius)
