@@ -50,7 +50,9 @@ pub fn cover(solid: &Polyhedron, params: &Params) -> Cover {
         cluster_of = merged;
     }
     let mut size = vec![0u32; cluster_of.len()];
-    cluster_of.iter().for_each(|&c| size[c as usize] += 1);
+    for &c in &cluster_of {
+        size[c as usize] += 1;
+    }
     let mut candidates: Vec<(f64, &Vec<u32>)> =
         orbits.iter().filter_map(|o| Some((distortion(solid, o[0])?, o))).filter(|c| c.0 < params.distortion).collect();
     candidates.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -227,7 +227,7 @@ impl<O: EditObserver> State<'_, O> {
     #[inline]
     fn valence_gain(&self, h: u32) -> i32 {
         let [a, b, c, d] = self.diamond(h);
-        let off = |v: u32| self.table.valence[v as usize] as i32 - i32::from(self.targets[v as usize]);
+        let off = |v: u32| self.table.valence[v as usize].cast_signed() - i32::from(self.targets[v as usize]);
         // (x − 1)² − x² = 1 − 2x at the ends, (x + 1)² − x² = 1 + 2x at the others.
         2 * (off(a) + off(b) - off(c) - off(d)) - 4
     }
