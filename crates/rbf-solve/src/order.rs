@@ -101,7 +101,7 @@ fn satellites(points: &[DVec3], chosen: &[u32]) -> Vec<(u32, u32)> {
     for &i in chosen {
         cells.insert(i as usize, points[i as usize]);
     }
-    chosen
+    let mut pairs: Vec<(u32, u32)> = chosen
         .par_iter()
         .filter_map(|&i| {
             let p = points[i as usize];
@@ -117,5 +117,12 @@ fn satellites(points: &[DVec3], chosen: &[u32]) -> Vec<(u32, u32)> {
             let host = near[1..4].iter().filter(|n| n.0 < 0.04 * typical).map(|n| n.1).min()?;
             (host < i).then_some((host, i))
         })
-        .collect()
+        .collect();
+    // A follower is no host. Hosts come before their followers, so one pass decides.
+    let mut follows = vec![false; points.len()];
+    pairs.retain(|&(host, i)| {
+        follows[i as usize] = !follows[host as usize];
+        follows[i as usize]
+    });
+    pairs
 }
