@@ -126,3 +126,33 @@ fn satellites(points: &[DVec3], chosen: &[u32]) -> Vec<(u32, u32)> {
     });
     pairs
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Clusters, repeats and lone points: every point once, its neighbours all before it.
+        #[test]
+        fn every_point_comes_once_with_its_nearest_before(
+            centres in prop::collection::vec(prop::array::uniform3(-0.5..0.5f64), 1..12),
+            steps in prop::collection::vec((0usize..12, prop::array::uniform3(-1.0..1.0f64), 0i32..12), 1..150),
+        ) {
+            let points: Vec<DVec3> = steps
+                .iter()
+                .map(|&(c, d, shrink)| DVec3::from(centres[c % centres.len()]) + DVec3::from(d) * 0.5f64.powi(1 + shrink))
+                .collect();
+            let chosen: Vec<u32> = (0..points.len() as u32).collect();
+            let ordered = CoarseToFine::new(&points, &chosen, 8);
+            let mut seen = ordered.order.clone();
+            seen.sort_unstable();
+            prop_assert_eq!(seen, chosen);
+            for at in 0..points.len() {
+                let before = &ordered.order[..at];
+                let near = ordered.neighbours(at);
+                prop_assert!(near.len() <= 8 && near.iter().all(|n| before.contains(n)));
+            }
+        }
+    }
+}

@@ -178,6 +178,24 @@ fn the_iterative_field_is_the_dense_field() {
     }
 }
 
+/// Scattered through space, in clusters and alone, as no surface is.
+#[test]
+fn clouds_are_fitted_iteratively_too() {
+    let cloud: Vec<Constraint> = directions(900)
+        .iter()
+        .enumerate()
+        .map(|(i, d)| {
+            let p = if i % 3 == 0 { 0.01 * *d } else { *d * (1.0 + (i % 17) as f64 / 10.0) };
+            Constraint::off_surface(p, (2.0 * p.x).sin() + p.y * p.z)
+        })
+        .collect();
+    for kernel in [Kernel::Biharmonic, Kernel::Triharmonic] {
+        let params = Params { kernel, solver: Solver::Iterative { tolerance: 1e-6 }, ..Params::default() };
+        let field = Field::fit(&cloud, &params, &|_| true).unwrap();
+        assert!(cloud.iter().all(|c| (field.value(c.point) - c.value).abs() < 1e-5));
+    }
+}
+
 #[test]
 fn many_constraints_hold_to_1e_8_of_the_box_for_any_number_of_threads() {
     let constraints = bumpy(2020);
