@@ -216,7 +216,7 @@ fn seat_in_corner(
             return None;
         }
         center += (normal.inverse() * rhs).clamp_length_max(0.5 * radius);
-        if !(center.distance(guess) < 4.0 * radius) {
+        if center.is_nan() || center.distance(guess) > 4.0 * radius {
             return None;
         }
     }

@@ -48,17 +48,17 @@ impl Ends<'_> {
                     let found = corner::set_back(self.mesh, node, rails, self.fineness.chord)?;
                     let cuts = found.cuts.iter().map(|(at, last)| Cut { at: *at, last: *last, ending: Ending::Corner });
                     let cuts = cuts.collect::<Vec<_>>();
-                    *setbacks.last_mut().expect("just pushed") = Some(found);
+                    setbacks[n] = Some(found);
                     cuts
                 }
                 Kind::RunOut { .. } => vec![self.run_out(node, rails)?],
-                Kind::Stop { creases, beyond } => match self.stop(node, rails, creases, beyond)? {
-                    Some(cut) => vec![cut],
-                    None => {
+                Kind::Stop { creases, beyond } => {
+                    let Some(cut) = self.stop(node, rails, creases, beyond)? else {
                         unstoppable.push(n);
                         continue;
-                    }
-                },
+                    };
+                    vec![cut]
+                }
             };
             for (dart, cut) in node.darts.iter().zip(found) {
                 cuts[dart.curve][dart.end] = cut;
@@ -105,7 +105,7 @@ impl Ends<'_> {
                 return Ok(Stretch { rail: Rail { samples: vec![from, to], ..rail.clone() }, endings: [a, b] });
             }
         }
-        if !(last - first > 1e-6) {
+        if last - first <= 1e-6 {
             let middle = view.sample((0.5 * (first + last)).clamp(0.0, (n - 1) as f64)).center;
             return Err(Trouble::at("the blends at both ends of a curve leave no room between them", vec![middle]));
         }

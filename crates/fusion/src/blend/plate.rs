@@ -26,7 +26,9 @@ impl Plate {
             turn.push(length);
             length += rim[i].distance(rim[(i + 1) % n]);
         }
-        turn.iter_mut().for_each(|t| *t /= length.max(f64::MIN_POSITIVE));
+        for t in &mut turn {
+            *t /= length.max(f64::MIN_POSITIVE);
+        }
         let rings = ((n as f64 / TAU / 0.866).round() as usize).max(1);
         let mut plate = Self { points: rim.to_vec(), faces: Vec::new(), rim: n };
         let (mut outer, mut outer_turn) = ((0..n as u32).collect::<Vec<_>>(), turn.clone());

@@ -18,8 +18,7 @@ impl Error {
     /// An error about the bytes `span` of the recipe `text`.
     pub(super) fn at(text: &str, span: Range<usize>, message: impl Into<String>) -> Self {
         let start = span.start.min(text.len());
-        let before = text.as_bytes()[..start].iter();
-        let line = 1 + before.filter(|&&b| b == b'\n').count();
+        let line = 1 + text.get(..start).map_or(0, |before| before.matches('\n').count());
         let whole = text.lines().nth(line - 1).unwrap_or_default();
         let key = whole.split('=').next().unwrap_or_default();
         let key = key.trim_matches(|c: char| c.is_whitespace() || "[]".contains(c)).to_string();

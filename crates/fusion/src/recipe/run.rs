@@ -79,7 +79,7 @@ impl Kitchen<'_> {
             let model = Model::from(std::mem::take(&mut self.pieces[i].mesh));
             let name = format!("cut of {}", self.pieces[i].name);
             let outcome = cut(&model, &params, self.watch).map_err(|e| step(&name, e))?;
-            self.take_up(&[i], vec![model], &name, outcome);
+            self.take_up(&[i], std::slice::from_ref(&model), &name, outcome);
         }
         Ok(())
     }
@@ -111,7 +111,7 @@ impl Kitchen<'_> {
             let models = self.models(&which);
             let outcome = join_parts(&models, &params, self.watch).map_err(|e| step(&name, e))?;
             let result = boolean.name.as_ref().map(|n| n.get_ref().clone());
-            let at = self.take_up(&which, models, &name, outcome);
+            let at = self.take_up(&which, &models, &name, outcome);
             if let Some(result) = result {
                 self.pieces[at].name = result;
             }
@@ -139,7 +139,7 @@ impl Kitchen<'_> {
             let name = format!("compose of {}", names.join(", "));
             let models = self.models(&which);
             let outcome = compose(&models, &params, self.watch).map_err(|e| step(&name, e))?;
-            let at = self.take_up(&which, models, &name, outcome);
+            let at = self.take_up(&which, &models, &name, outcome);
             if let Some(result) = &table.name {
                 self.pieces[at].name.clone_from(result.get_ref());
             }
@@ -199,7 +199,7 @@ impl Kitchen<'_> {
             let name = format!("blend of {}", self.pieces[at].name);
             let models = self.models(&[at]);
             let outcome = round::round(&models[0], &params, self.watch).map_err(|e| step(&name, e))?;
-            self.take_up(&[at], models, &name, outcome);
+            self.take_up(&[at], &models, &name, outcome);
         }
         Ok(())
     }
@@ -214,7 +214,7 @@ impl Kitchen<'_> {
             let name = format!("clusters of {}", self.pieces[at].name);
             let models = self.models(&[at]);
             let made = cluster(&models[0], &params, self.watch).map_err(|e| step(&name, e))?;
-            self.take_up(&[at], models, &name, made.outcome);
+            self.take_up(&[at], &models, &name, made.outcome);
         }
         Ok(())
     }
@@ -231,11 +231,11 @@ impl Kitchen<'_> {
     }
 
     /// Puts a step's result in the place of the pieces it was made of; gives its place.
-    fn take_up(&mut self, which: &[usize], models: Vec<Model>, name: &str, outcome: Outcome) -> usize {
+    fn take_up(&mut self, which: &[usize], models: &[Model], name: &str, outcome: Outcome) -> usize {
         let inputs: Vec<&dyn Faces> = self.first.iter().map(|m| &m.mesh as &dyn Faces).collect();
         let stages: Vec<Stage<'_>> = which
             .iter()
-            .zip(&models)
+            .zip(models)
             .map(|(&w, m)| Stage { origins: &self.pieces[w].origins, faces: &m.mesh })
             .collect();
         let origins = outcome.origins.compose(&stages, &inputs);

@@ -114,7 +114,7 @@ impl Growth<'_> {
                 if Some(h) == back {
                     side = 1;
                 }
-                self.take(h.face(), side, self.places[k].hint)?;
+                self.take(h.face(), side, self.places[k].hint);
                 h = mesh.twin(h.prev()).ok_or(Refusal::Boundary { at: mesh.position(mesh.tail(h)) })?;
                 if h == ahead {
                     break;
@@ -136,15 +136,15 @@ impl Growth<'_> {
             if self.mesh.twin(h.prev()).is_none() {
                 return Err(Refusal::Boundary { at: self.mesh.position(place.vertex) });
             }
-            self.take(h.face(), place.side, place.hint)?;
+            self.take(h.face(), place.side, place.hint);
         }
         Ok(())
     }
 
     /// Adds a face, and finds the places of its vertices.
-    fn take(&mut self, face: FaceId, side: u8, hint: u32) -> Result<(), Refusal> {
+    fn take(&mut self, face: FaceId, side: u8, hint: u32) {
         if std::mem::replace(&mut self.scratch.taken[face.index()], true) {
-            return Ok(());
+            return;
         }
         self.faces.push(face);
         for vertex in self.mesh.corners(face) {
@@ -154,7 +154,6 @@ impl Growth<'_> {
                 self.places.push(place);
             }
         }
-        Ok(())
     }
 
     fn place(&self, vertex: VertexId, side: u8, hint: usize) -> Place {
