@@ -34,7 +34,7 @@ pub(super) fn kept_faces(
         for component in components(mesh).faces() {
             let untouched = component.iter().all(|&f| !stays[f] && !gone[f]);
             if untouched && component.iter().any(|&f| section.is_beyond(mesh, f)) {
-                for &f in component {
+                for &f in &component {
                     gone[f] = true;
                 }
             }
