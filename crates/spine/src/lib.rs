@@ -56,7 +56,7 @@ pub struct Params {
     pub alpha: f64,
     /// Step along the spine, in model units.
     pub step: f64,
-    /// Longest step, taken where the spine is straight; no less than `step`.
+    /// Longest step, taken where the spine is straight; anything up to `step` means that none is longer.
     pub longest: f64,
     /// Largest sagitta of a step longer than `step`, as a share of the radius.
     pub sagitta: f64,
@@ -89,7 +89,7 @@ impl Params {
             radius: RadiusField::constant(radius),
             alpha: 1.75, // [Liu2005] §3
             step: 0.2 * radius,
-            longest: 0.2 * radius,
+            longest: 0.0,
             sagitta: 1e-3,
             fairness: 0.6,
             softenings: Vec::new(),

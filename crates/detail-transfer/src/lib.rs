@@ -1,1 +1,0 @@
-//! Geometry detail carried from one region of a surface to another.
