@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `mod.rs` | the stages, and the loop that makes the ball smaller where it does not fit |
 //! | `limit.rs` | the largest radius that fits |
+//! | `mends.rs` | what has been done so far to make the blend fit |
 //! | `network.rs` | the nodes at which open curves meet or end |
 //! | `ending.rs` | rails cut to length there: set back, run out, or stopped at the surface ahead |
 //! | `corner.rs` | how far curves that meet are set back, and the ball that touches all sides |
@@ -22,6 +23,7 @@ mod fill;
 pub mod keep;
 mod limit;
 mod linkage;
+mod mends;
 mod network;
 mod plate;
 mod sew;
@@ -34,6 +36,7 @@ use fill::fill;
 use glam::DVec3;
 pub use limit::{Limit, max_radius};
 use linkage::cut_linkages;
+use mends::Mends;
 use mesh_core::{
     Adjacency, Cancelled, Connected, FaceId, Faces, NotManifold, Origins, Positions, TriMesh, VertexId, Watch,
 };
@@ -41,7 +44,7 @@ use network::{Kind, Network};
 use profile_nurbs::Profile;
 use rayon::prelude::*;
 use sew::{between, sew};
-use spine::{BlendCurve, Dip, RadiusField, Rail, Softening, Solver, roll};
+use spine::{BlendCurve, Dip, RadiusField, Rail, Solver, roll};
 use strip::{Fineness, sweep};
 use trouble::Trouble;
 
@@ -435,72 +438,4 @@ fn check(sewn: &sew::Sewn, watch: &Watch) -> Result<(), Trouble> {
     let first_new = sewn.first_new_face;
     let places = hits.iter().flatten().filter(|&&f| f >= first_new).map(|&f| middle(f)).collect();
     Err(Trouble::at("the blend meets itself or the mesh", places))
-}
-
-/// What has been done so far to make the blend fit.
-struct Mends {
-    radius: RadiusField,
-    softenings: Vec<Softening>,
-    /// Places and how often each has been mended.
-    spots: Vec<(DVec3, u32)>,
-    /// Spots mended in this round.
-    fresh: Vec<usize>,
-}
-
-impl Mends {
-    fn new(radius: f64) -> Self {
-        Self { radius: RadiusField::constant(radius), softenings: Vec::new(), spots: Vec::new(), fresh: Vec::new() }
-    }
-
-    /// Mends each place: the first time by smoothing the linkages more, then by a smaller ball. False when a ball a
-    /// tenth of the size has not helped.
-    fn add(&mut self, places: &[DVec3], overlap: Overlap) -> bool {
-        self.fresh.clear();
-        let r = self.radius.base;
-        for &place in places {
-            let near = (0..self.spots.len()).find(|&i| self.spots[i].0.distance(place) < 2.0 * r);
-            let spot = near.unwrap_or_else(|| {
-                self.spots.push((place, 0));
-                self.spots.len() - 1
-            });
-            if !self.fresh.contains(&spot) {
-                self.fresh.push(spot);
-                self.spots[spot].1 += 1;
-            }
-        }
-        self.softenings.clear();
-        self.radius.dips.clear();
-        for &(at, count) in &self.spots {
-            let extent = r * (3.0 + 0.5 * f64::from(count));
-            self.softenings.push(Softening { at, extent, extra: 0.3 * r * f64::from(count.min(3)) });
-            if count > 1 && overlap == Overlap::Shrink {
-                self.radius.dips.push(Dip { at, factor: 0.7f64.powf(f64::from(count - 1)), extent });
-            }
-        }
-        self.spots.iter().all(|s| s.1 < 8)
-    }
-
-    fn touches(&self, rail: &Rail) -> bool {
-        self.fresh.iter().any(|&i| {
-            let (at, count) = self.spots[i];
-            let extent = self.radius.base * (3.0 + 0.5 * f64::from(count));
-            rail.samples.iter().any(|s| s.center.distance(at) < extent)
-        })
-    }
-
-    fn account_for(&self, rails: &[Option<Rail>], blended: &mut Blended) {
-        blended.shrunk = self.radius.dips.iter().map(|d| (d.at, self.radius.at(d.at).0)).collect();
-        let (mut full, mut total) = (0.0, 0.0);
-        for rail in rails.iter().flatten() {
-            let next = rail.samples.iter().skip(1).chain(rail.samples.first().filter(|_| rail.closed));
-            for (s, next) in rail.samples.iter().zip(next) {
-                let length = s.center.distance(next.center);
-                total += length;
-                if s.radius >= 0.999 * self.radius.base {
-                    full += length;
-                }
-            }
-        }
-        blended.full_share = if total > 0.0 { full / total } else { 1.0 };
-    }
 }

@@ -1,0 +1,73 @@
+//! What has been done so far to make the blend fit: linkages smoothed, and the ball made smaller, place by place.
+
+use super::{Blended, Overlap};
+use glam::DVec3;
+use spine::{Dip, RadiusField, Rail, Softening};
+
+/// What has been done so far to make the blend fit.
+pub(super) struct Mends {
+    pub radius: RadiusField,
+    pub softenings: Vec<Softening>,
+    /// Places and how often each has been mended.
+    spots: Vec<(DVec3, u32)>,
+    /// Spots mended in this round.
+    fresh: Vec<usize>,
+}
+
+impl Mends {
+    pub fn new(radius: f64) -> Self {
+        Self { radius: RadiusField::constant(radius), softenings: Vec::new(), spots: Vec::new(), fresh: Vec::new() }
+    }
+
+    /// Mends each place: the first time by smoothing the linkages more, then by a smaller ball. False when a ball a
+    /// tenth of the size has not helped.
+    pub fn add(&mut self, places: &[DVec3], overlap: Overlap) -> bool {
+        self.fresh.clear();
+        let r = self.radius.base;
+        for &place in places {
+            let near = (0..self.spots.len()).find(|&i| self.spots[i].0.distance(place) < 2.0 * r);
+            let spot = near.unwrap_or_else(|| {
+                self.spots.push((place, 0));
+                self.spots.len() - 1
+            });
+            if !self.fresh.contains(&spot) {
+                self.fresh.push(spot);
+                self.spots[spot].1 += 1;
+            }
+        }
+        self.softenings.clear();
+        self.radius.dips.clear();
+        for &(at, count) in &self.spots {
+            let extent = r * (3.0 + 0.5 * f64::from(count));
+            self.softenings.push(Softening { at, extent, extra: 0.3 * r * f64::from(count.min(3)) });
+            if count > 1 && overlap == Overlap::Shrink {
+                self.radius.dips.push(Dip { at, factor: 0.7f64.powf(f64::from(count - 1)), extent });
+            }
+        }
+        self.spots.iter().all(|s| s.1 < 8)
+    }
+
+    pub fn touches(&self, rail: &Rail) -> bool {
+        self.fresh.iter().any(|&i| {
+            let (at, count) = self.spots[i];
+            let extent = self.radius.base * (3.0 + 0.5 * f64::from(count));
+            rail.samples.iter().any(|s| s.center.distance(at) < extent)
+        })
+    }
+
+    pub fn account_for(&self, rails: &[Option<Rail>], blended: &mut Blended) {
+        blended.shrunk = self.radius.dips.iter().map(|d| (d.at, self.radius.at(d.at).0)).collect();
+        let (mut full, mut total) = (0.0, 0.0);
+        for rail in rails.iter().flatten() {
+            let next = rail.samples.iter().skip(1).chain(rail.samples.first().filter(|_| rail.closed));
+            for (s, next) in rail.samples.iter().zip(next) {
+                let length = s.center.distance(next.center);
+                total += length;
+                if s.radius >= 0.999 * self.radius.base {
+                    full += length;
+                }
+            }
+        }
+        blended.full_share = if total > 0.0 { full / total } else { 1.0 };
+    }
+}
