@@ -2,8 +2,10 @@
 
 use fusion::blend::{Blended, Overlap, Params, blend, max_radius};
 use fusion::features::{self, feature_curves};
+use fusion::round;
 use glam::DVec3;
-use mesh_core::{Connected, Faces, Positions, TriMesh, VertexId, VertexOrigin, Watch, shapes};
+use mesh_core::{Connected, Faces, Positions, TriMesh, VertexId, VertexOrigin, Watch, shapes, volume};
+use mesh_io::{Format, Model};
 use spine::BlendCurve;
 use std::f64::consts::PI;
 
@@ -20,10 +22,6 @@ fn rounded(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params) ->
     let connected = Connected::new(&done.mesh).unwrap();
     assert!(mesh_core::boundary_loops(&connected).is_empty());
     done
-}
-
-fn volume(mesh: &TriMesh) -> f64 {
-    mesh.faces.iter().map(|f| f.map(|v| mesh.position(v))).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }
 
 /// Signed distance of a point to the cuboid of half sides `half` rounded with radius `r`, centred on the origin.
@@ -62,6 +60,20 @@ fn the_largest_radius_of_a_cube_is_half_its_side() {
     assert!(fits(0.99 * limit.radius) && !fits(1.02 * limit.radius));
 }
 
+/// Four edges around a face, and no fifth: one closed curve, not four that stop at each other.
+#[test]
+fn edges_that_meet_in_pairs_are_one_curve() {
+    let cube = Model::from(shapes::cuboid(DVec3::ONE));
+    let params = round::Params {
+        features: features::Params::default(),
+        near: [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y].map(|side| 0.5 * (side + DVec3::Z)).to_vec(),
+        blend: Params { overlap: Overlap::Error, ..Params::new(0.1) },
+        format: Format::Ply,
+    };
+    let figures = round::round(&cube, &params, &Watch::default()).unwrap().report.figures;
+    assert_eq!(["curves", "strips", "corners"].map(|f| figures[f]), [1.0, 1.0, 0.0]);
+}
+
 #[test]
 fn one_edge_stops_in_the_faces_at_its_ends() {
     let mesh = Connected::new(shapes::cuboid(DVec3::ONE)).unwrap();
@@ -95,7 +107,7 @@ fn an_l_bracket_has_fair_mixed_corners() {
     assert_eq!((done.strips, done.corners), (18, 12));
     let inside = |p: &DVec3| p.min_element() > -1e-9 && p.x < 2.0 + 1e-9 && p.y < 2.0 + 1e-9 && p.z < 1.0 + 1e-9;
     assert!(done.mesh.positions.iter().all(inside));
-    // The bracket is its own mirror image in x = y; so is the volume of either half.
+    // Tangent all around: no edge turns by more than the chords of the arcs and of the mixed patches do.
     let connected = Connected::new(&done.mesh).unwrap();
     let sharpest = (0..3 * done.mesh.face_count())
         .filter_map(|h| mesh_core::dihedral_angle(&connected, mesh_core::HalfedgeId::from(h)))
@@ -110,7 +122,7 @@ fn half_a_rim_runs_out_at_both_ends() {
     let half = BlendCurve { halfedges: rim.halfedges[..32].to_vec(), closed: false };
     let done = rounded(&mesh, std::slice::from_ref(&half), &Params::new(0.1));
     assert_eq!((done.strips, done.corners), (1, 0));
-    // What is farther than two radii from the curve keeps its bits.
+    // What is farther than three radii from the curve keeps its bits.
     let near = |p: DVec3| half.points(&mesh).iter().any(|q| q.distance(p) < 0.3);
     let kept: std::collections::HashSet<_> = done
         .origins

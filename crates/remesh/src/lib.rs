@@ -1,4 +1,4 @@
-//! Area-equalizing remeshing, smoothing and fairing with frozen boundaries and features.
+//! Area-equalizing remeshing with frozen boundaries and features.
 //!
 //! ```
 //! use mesh_core::{Connected, Watch, shapes};

@@ -112,9 +112,9 @@ pub(crate) fn join(
             let (last, before) = stretch.last_two(dart.end);
             let foot = last.feet[side].point;
             let inwards = (foot - before.feet[side].point).normalize_or_zero();
-            Some((foot, inwards, (foot - last.center).normalize_or_zero() * stretch.outwards(), last))
+            Some((foot, inwards, (foot - last.center).normalize_or_zero() * stretch.outwards()))
         };
-        let ((p, u, n, _), (q, v, m, _)) = (tip(from, from.end)?, tip(to, to.right())?);
+        let ((p, u, n), (q, v, m)) = (tip(from, from.end)?, tip(to, to.right())?);
         let patch = &stretches[from.curve].as_ref()?.rail.patches[from.end];
         let chord = p.distance(q);
         let apex = setbacks.crossings[i].or_else(|| lines_meet(p, u, q, v, 4.0 * chord));

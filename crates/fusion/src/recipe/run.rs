@@ -20,8 +20,8 @@ struct Piece {
     origins: Origins,
 }
 
-/// Everything on its way.
-struct Kitchen<'a> {
+/// A recipe being replayed.
+struct Replay<'a> {
     recipe: &'a Recipe,
     /// The parts as they came, posed once the poses have been taken: what origins and attributes refer to.
     first: Vec<Model>,
@@ -47,7 +47,7 @@ impl Recipe {
             mesh: model.mesh.clone(),
             origins: Origins::identity(i as u32, model.mesh.vertex_count(), model.mesh.face_count()),
         };
-        let mut kitchen = Kitchen {
+        let mut replay = Replay {
             recipe: self,
             first: parts.to_vec(),
             pieces: self.parts.iter().zip(parts).enumerate().map(piece).collect(),
@@ -58,20 +58,20 @@ impl Recipe {
         };
         for step in self.order() {
             match step {
-                Step::Cut => kitchen.cut()?,
-                Step::Pose => kitchen.pose()?,
-                Step::Boolean => kitchen.booleans()?,
-                Step::Compose => kitchen.composes()?,
-                Step::Blend => kitchen.blends()?,
-                Step::Cluster => kitchen.clusters()?,
+                Step::Cut => replay.cut()?,
+                Step::Pose => replay.pose()?,
+                Step::Boolean => replay.booleans()?,
+                Step::Compose => replay.composes()?,
+                Step::Blend => replay.blends()?,
+                Step::Cluster => replay.clusters()?,
                 Step::Output => {}
             }
         }
-        kitchen.serve()
+        replay.finish()
     }
 }
 
-impl Kitchen<'_> {
+impl Replay<'_> {
     fn cut(&mut self) -> Result<(), Error> {
         for (i, part) in self.recipe.parts.iter().enumerate().filter(|(_, p)| !p.cut.is_empty()) {
             let cuts = part.cut.iter().map(|c| self.recipe.plane(c)).collect::<Result<Vec<_>, _>>()?;
@@ -220,7 +220,7 @@ impl Kitchen<'_> {
     }
 
     /// Validates and describes the one piece that is left.
-    fn serve(mut self) -> Result<Outcome, Error> {
+    fn finish(mut self) -> Result<Outcome, Error> {
         let last = self.only("join what is left over")?;
         let piece = self.pieces.swap_remove(last);
         finish_as(Promise::Manifold, &self.first, piece.mesh, piece.origins, self.format, self.report, self.watch)
