@@ -5,7 +5,7 @@ use faer::linalg::cholesky::llt::factor::LltError;
 use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::traits::ComplexField;
-use faer::{Conj, MatMut, Par, Side};
+use faer::{Conj, MatMut, Par, Side, c64};
 
 /// One setting whatever the machine, since faer's bits depend on it. Most of these systems are solved within
 /// milliseconds by plain columns, which have no work to share.
@@ -25,12 +25,39 @@ pub(crate) struct Cholesky<T> {
     values: Vec<T>,
 }
 
-impl<T: ComplexField + Copy> Cholesky<T> {
+// Compiled here, once. Left generic, the solver would be compiled anew, at length, by every crate that calls a function
+// of this one for a mesh of its own.
+
+impl Cholesky<f64> {
     /// Factorises.
     ///
     /// # Errors
     /// The unknown whose pivot is not positive, or the last one where memory or indices run out.
-    pub fn new(matrix: &Lower<T>) -> Result<Self, usize> {
+    #[inline(never)]
+    pub fn real(matrix: &Lower<f64>) -> Result<Self, usize> {
+        Self::new(matrix)
+    }
+
+    /// Solves for `columns` right-hand sides, one after the other in `x`, in place.
+    #[inline(never)]
+    pub fn solve_real(&self, x: &mut [f64], columns: usize) {
+        self.solve(x, columns);
+    }
+}
+
+impl Cholesky<c64> {
+    /// Factorises.
+    ///
+    /// # Errors
+    /// The unknown whose pivot is not positive, or the last one where memory or indices run out.
+    #[inline(never)]
+    pub fn complex(matrix: &Lower<c64>) -> Result<Self, usize> {
+        Self::new(matrix)
+    }
+}
+
+impl<T: ComplexField + Copy> Cholesky<T> {
+    fn new(matrix: &Lower<T>) -> Result<Self, usize> {
         let n = matrix.starts.len() - 1;
         let last = n.saturating_sub(1);
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows);

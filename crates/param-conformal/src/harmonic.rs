@@ -135,7 +135,7 @@ impl Harmonic {
             }
         }
         if let Some(factor) = &self.factor {
-            factor.solve(&mut x, K);
+            factor.solve_real(&mut x, K);
         }
         let value = |node: &Node| match *node {
             Node::Absent => [0.0; K],
@@ -255,5 +255,5 @@ fn assemble<M: Adjacency + Positions + Sync>(
 }
 
 fn factorise<M: Positions>(mesh: &M, lower: &Lower<f64>, free: &[VertexId]) -> Result<Cholesky<f64>, Error> {
-    Cholesky::new(lower).map_err(|i| Error::Singular { vertex: free[i], at: mesh.position(free[i]) })
+    Cholesky::real(lower).map_err(|i| Error::Singular { vertex: free[i], at: mesh.position(free[i]) })
 }
