@@ -56,6 +56,14 @@ pub enum Error {
         /// A vertex of the piece.
         at: DVec3,
     },
+    /// Rounding is larger than what a linear system is to find.
+    #[error(
+        "the system cannot be solved near {at}: triangles are too thin or too many there; remesh first, or use a lower order or a smaller region"
+    )]
+    IllConditioned {
+        /// Where it failed.
+        at: DVec3,
+    },
     /// See [`mesh_core::Watch`].
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

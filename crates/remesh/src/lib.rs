@@ -1,4 +1,4 @@
-//! Area-equalizing remeshing with frozen boundaries and features.
+//! Area-equalizing remeshing, smoothing and fairing of surfaces, with frozen boundaries and features.
 //!
 //! ```
 //! use mesh_core::{Connected, Watch, shapes};
@@ -21,10 +21,16 @@
 //! | `isotropic/features.rs`, `isotropic/lines.rs` | feature polylines, and vertices that slide along them |
 //! | `isotropic/relax.rs` | tangential relaxation; taking back what folds |
 //! | `isotropic/seat.rs` | points put back onto the input |
+//! | `smooth/taubin.rs`, `smooth/flow.rs` | smoothing that keeps the volume, and by implicit curvature flow |
+//! | `smooth/fair.rs` | harmonic, biharmonic and triharmonic fairing |
+//! | `smooth/held.rs` | what may move |
+//! | `smooth/laplace.rs`, `smooth/cholesky.rs` | the cotangent Laplacian and sparse systems made of it |
 //! | `error.rs` | why there is no result |
 
 mod error;
 mod isotropic;
+mod smooth;
 
 pub use error::Error;
 pub use isotropic::{Frozen, Params, Projection, Remeshed, Sizing, graded_sizes, remesh, remesh_observed};
+pub use smooth::{Fairing, Fairness, Flow, Taubin, curvature_flow, fair, taubin};

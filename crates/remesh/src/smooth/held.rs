@@ -1,0 +1,113 @@
+//! Which vertices a smoothing may move, and the surface seen from a place where numbers are of order one.
+
+use crate::{Error, Frozen};
+use glam::DVec3;
+use mesh_core::{Adjacency, Bounds, FaceId, Faces, HalfedgeId, Positions, VertexId, VertexMap, dihedral_angle};
+
+impl Frozen {
+    /// Also holds the ends of all edges whose faces' normals are `angle` degrees or more apart. O(n).
+    #[must_use]
+    pub fn with_features<M: Adjacency + Positions>(mut self, mesh: &M, angle: f64) -> Self {
+        let sharp = |&h: &HalfedgeId| dihedral_angle(mesh, h).is_some_and(|a| a.abs() >= angle.to_radians());
+        for h in (0..3 * mesh.face_count() as u32).map(HalfedgeId).filter(sharp) {
+            if self.vertices.is_empty() {
+                self.vertices = VertexMap::filled(mesh.vertex_count(), false);
+            }
+            for v in [mesh.tail(h), mesh.head(h)] {
+                if let Some(held) = self.vertices.as_mut_slice().get_mut(v.index()) {
+                    *held = true;
+                }
+            }
+        }
+        self
+    }
+}
+
+/// A surface whose points have been moved.
+pub(super) struct Moved<'a, M> {
+    pub mesh: &'a M,
+    pub points: Vec<DVec3>,
+}
+
+impl<M: Faces> Faces for Moved<'_, M> {
+    fn vertex_count(&self) -> usize {
+        self.mesh.vertex_count()
+    }
+    fn face_count(&self) -> usize {
+        self.mesh.face_count()
+    }
+    #[inline]
+    fn corners(&self, f: FaceId) -> [VertexId; 3] {
+        self.mesh.corners(f)
+    }
+}
+
+impl<M: Adjacency> Adjacency for Moved<'_, M> {
+    #[inline]
+    fn twin(&self, h: HalfedgeId) -> Option<HalfedgeId> {
+        self.mesh.twin(h)
+    }
+    #[inline]
+    fn outgoing(&self, v: VertexId) -> Option<HalfedgeId> {
+        self.mesh.outgoing(v)
+    }
+}
+
+impl<M> Positions for Moved<'_, M> {
+    #[inline]
+    fn position(&self, v: VertexId) -> DVec3 {
+        self.points[v.index()]
+    }
+}
+
+/// A surface moved to the origin and scaled to a box of diagonal 1, and the vertices that may move.
+pub(super) struct Task<'a, M> {
+    pub moved: Moved<'a, M>,
+    pub free: Vec<u32>,
+    center: DVec3,
+    pub scale: f64,
+}
+
+impl<'a, M: Adjacency + Positions> Task<'a, M> {
+    /// All vertices are free but those on the boundary, those that are frozen, and corners of frozen faces.
+    pub fn new(mesh: &'a M, frozen: &Frozen) -> Result<Self, Error> {
+        for (name, found, expected) in [
+            ("frozen vertices", frozen.vertices.len(), mesh.vertex_count()),
+            ("frozen faces", frozen.faces.len(), mesh.face_count()),
+        ] {
+            if found != 0 && found != expected {
+                return Err(Error::Count { name, found, expected });
+            }
+        }
+        let mut free = vec![false; mesh.vertex_count()];
+        for v in mesh.vertex_ids() {
+            let p = mesh.position(v);
+            if !(p.is_finite() && p.abs().max_element() < 1e100) {
+                return Err(Error::NotFinite { vertex: v, place: p });
+            }
+            let inner = mesh.outgoing(v).is_some_and(|h| mesh.twin(h).is_some());
+            free[v.index()] = inner && !frozen.vertices.get(v).is_some_and(|&f| f);
+        }
+        for (f, _) in mesh.face_ids().zip(frozen.faces.as_slice()).filter(|f| *f.1) {
+            for v in mesh.corners(f) {
+                free[v.index()] = false;
+            }
+        }
+        let bounds = Bounds::of(mesh.vertex_ids().map(|v| mesh.position(v)));
+        let (center, diagonal) = (if bounds.is_empty() { DVec3::ZERO } else { bounds.center() }, bounds.diagonal());
+        let scale = if diagonal > 0.0 { diagonal } else { 1.0 };
+        let points = mesh.vertex_ids().map(|v| (mesh.position(v) - center) / scale).collect();
+        let free = (0..free.len() as u32).filter(|&v| free[v as usize]).collect();
+        Ok(Self { moved: Moved { mesh, points }, free, center, scale })
+    }
+
+    /// The points in the input's place and size; vertices that are not free have the input's bits.
+    pub fn finish(self) -> Vec<DVec3> {
+        let mesh = self.moved.mesh;
+        let mut points: Vec<DVec3> = mesh.vertex_ids().map(|v| mesh.position(v)).collect();
+        for &v in &self.free {
+            points[v as usize] = self.center + self.scale * self.moved.points[v as usize];
+        }
+        points
+    }
+}
