@@ -18,9 +18,11 @@ pub struct Blend {
     pub shrink: Vec<f64>,
 }
 
-/// How much reaches shorten at a time, and how often at most: down to a fiftieth.
+/// How much reaches shorten at a time, and how often at most for one edge: a few times with care, then faster each time,
+/// down to a thirtieth.
 const SHORTER: f64 = 0.85;
-const ROUNDS: usize = 24;
+const CAREFUL: i32 = 2;
+const MOST: i32 = 7;
 /// Least length of a strip, as a share of its edge.
 const GAP: f64 = 0.1;
 /// How much they shorten once more, when they fit.
@@ -45,9 +47,11 @@ pub fn blend(
     // Finer than this, a mesh would have more triangles than ids.
     let tolerance = tolerance.max(1e-8 * solid.size);
     let mut shrink = vec![shorten; solid.halfedges.len()];
+    let mut times = vec![0; shrink.len()];
     let (mut crowded, mut spaced) = (vec![], false);
-    for round in 0..ROUNDS {
-        watch.step("layout", round as f64 / ROUNDS as f64)?;
+    loop {
+        let worst = times.iter().copied().max().unwrap_or(0);
+        watch.step("layout", f64::from(worst) / f64::from(MOST))?;
         let layout = Layout::new(solid, specs, params, &shrink)?;
         let mut shorter = vec![false; shrink.len()];
         let mut shorten_edge = |h: u32| {
@@ -55,7 +59,7 @@ pub fn blend(
             shorter[solid.halfedges[h as usize].twin as usize] = true;
         };
         let passing: Vec<u32> = passing(solid, &layout).collect();
-        if passing.is_empty() || round + 1 == ROUNDS {
+        if passing.is_empty() || worst >= MOST {
             let woven = weave(solid, &layout, tolerance, watch)?;
             if woven.crowded.is_empty() {
                 if crowded.is_empty() || spaced {
@@ -66,14 +70,19 @@ pub fn blend(
                 spaced = true;
                 continue;
             }
+            if worst >= MOST {
+                let (face, at) = woven.crowded[0];
+                return Err(Error::Crowded { face: face as usize, at });
+            }
             crowded = woven.crowded;
             crowded.iter().flat_map(|&(face, _)| solid.face_halfedges(face)).for_each(&mut shorten_edge);
         }
         passing.into_iter().for_each(&mut shorten_edge);
-        shrink.iter_mut().zip(shorter).filter(|s| s.1).for_each(|(s, _)| *s *= SHORTER);
+        for ((reach, times), _) in shrink.iter_mut().zip(&mut times).zip(shorter).filter(|s| s.1) {
+            *times += 1;
+            *reach *= SHORTER.powi((*times - CAREFUL + 1).max(1));
+        }
     }
-    let (face, at) = crowded.first().copied().unwrap_or_default();
-    Err(Error::Crowded { face: face as usize, at })
 }
 
 /// The edges whose strips would run backwards: where the two patches, as they are cut off, pass each other or almost.
@@ -81,10 +90,8 @@ fn passing<'a>(solid: &'a Polyhedron, layout: &'a Layout) -> impl Iterator<Item 
     layout.strips.iter().filter_map(move |strip| {
         let h = layout.clusters[strip.ends[0].0].open[strip.ends[0].1];
         let edge = solid.vector(h);
-        let gap = |s: f64| {
-            let [near, far] = [0.0, 1.0].map(|t| strip.point(&layout.patches, s, t));
-            (far - near).dot(edge) / edge.length_squared()
-        };
-        [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().any(|s| gap(s) < GAP).then_some(h)
+        let at = [0.0, 0.25, 0.5, 0.75, 1.0];
+        let [near, far] = [0.0, 1.0].map(|t| strip.points(&layout.patches, &at.map(|s| [s, t])));
+        near.iter().zip(far).any(|(&a, b)| (b - a).dot(edge) < GAP * edge.length_squared()).then_some(h)
     })
 }

@@ -74,6 +74,23 @@ impl Strip {
         f * patches[self.ends[0].0].point(p) + (1.0 - f) * patches[self.ends[1].0].point(q)
     }
 
+    /// The strip at many places (s, t) at once.
+    pub fn points(&self, patches: &[Patch], at: &[[f64; 2]]) -> Vec<DVec3> {
+        let domain: Vec<[DVec2; 2]> = at.iter().map(|&[s, t]| self.domain(patches, s, t)).collect();
+        let [near, far] = [0, 1].map(|end| {
+            let mut points = vec![];
+            patches[self.ends[end].0].points(&domain.iter().map(|d| d[end]).collect::<Vec<_>>(), &mut points);
+            points
+        });
+        let mix = |(&[_, t], (&a, &b)): (&[f64; 2], (&DVec3, &DVec3))| match t {
+            // The ends are the patches' own curves, bit for bit.
+            _ if t <= 0.0 => a,
+            _ if t >= 1.0 => b,
+            _ => self.params.weight(t) * a + (1.0 - self.params.weight(t)) * b,
+        };
+        at.iter().zip(near.iter().zip(&far)).map(mix).collect()
+    }
+
     /// The strip's side in the face to the right (0) or left (1), at t: from the patches' boundary curves, so that it
     /// lies in the face's plane to rounding.
     pub fn side(&self, patches: &[Patch], left: usize, t: f64) -> DVec3 {

@@ -8,12 +8,13 @@ const LOOKS: usize = 24;
 const SAFETY: f64 = 0.8;
 
 /// Shares in [0, 1], from 0 to 1, at which to cut a curve so that its chords stay within `tolerance`. The density of
-/// cuts is the greatest that any of `curves` asks for at each place; nowhere less than a quarter of the mean.
-pub fn shares(curves: &[&dyn Fn(f64) -> DVec3], tolerance: f64, least: usize) -> Vec<f64> {
+/// cuts is the greatest that any of `curves` asks for at each place; nowhere less than a quarter of the mean. Curves take many places at once, as patches do.
+pub fn shares(curves: &[&dyn Fn(&[f64]) -> Vec<DVec3>], tolerance: f64, least: usize) -> Vec<f64> {
     let step = 1.0 / LOOKS as f64;
+    let looks: [f64; 2 * LOOKS + 1] = std::array::from_fn(|i| 0.5 * step * i as f64);
     let mut density = [0.0f64; LOOKS];
     for curve in curves {
-        let points: Vec<DVec3> = (0..=2 * LOOKS).map(|i| curve(0.5 * step * i as f64)).collect();
+        let points = curve(&looks);
         for (i, d) in density.iter_mut().enumerate() {
             // |x″| h² from the two halves of the interval; a chord over 1/n of it is off by that over 8 n².
             let bend = (points[2 * i] - 2.0 * points[2 * i + 1] + points[2 * i + 2]).length() * 4.0;
@@ -57,7 +58,7 @@ mod tests {
     fn chords_of_an_ellipse_stay_within_tolerance() {
         let ellipse = |t: f64| DVec3::new(3.0 * (6.2 * t).cos(), (6.2 * t).sin(), 0.0);
         for tolerance in [1e-2, 1e-3, 1e-4] {
-            let cut = shares(&[&ellipse], tolerance, 1);
+            let cut = shares(&[&|at: &[f64]| at.iter().map(|&t| ellipse(t)).collect()], tolerance, 1);
             let off = cut.windows(2).map(|w| {
                 let middle = ellipse(0.5 * (w[0] + w[1]));
                 middle.distance(0.5 * (ellipse(w[0]) + ellipse(w[1])))
@@ -65,7 +66,7 @@ mod tests {
             let worst = off.fold(0.0, f64::max);
             assert!(worst < tolerance && worst > 0.3 * tolerance, "{worst} {tolerance}");
         }
-        let straight = shares(&[&|t: f64| t * DVec3::X], 1e-3, 4);
+        let straight = shares(&[&|at: &[f64]| at.iter().map(|&t| t * DVec3::X).collect()], 1e-3, 4);
         assert!((0..=4).all(|i| (straight[i] - 0.25 * i as f64).abs() < 1e-12), "{straight:?}");
     }
 

@@ -1,7 +1,9 @@
 //! One watertight mesh of patches, strips and planar faces: every curve they share is sampled once.
 
 use crate::error::Error;
+use crate::hartmann::Strip;
 use crate::layout::Layout;
+use crate::patch::Patch;
 use crate::planar::triangulate;
 use crate::polyhedron::Polyhedron;
 use crate::rings::{Segment, Sheet, cover};
@@ -110,6 +112,24 @@ impl Woven {
 /// A row of vertices at shares of a curve.
 type Row = (Vec<f64>, Vec<VertexId>);
 
+/// The points of a row before they are numbered, and their shares.
+type Drawn = (Vec<DVec3>, Vec<f64>);
+
+struct DrawnStrip {
+    across: [Drawn; 2],
+    along: [Drawn; 2],
+}
+
+fn draw_strip(strip: &Strip, patches: &[Patch], tolerance: f64) -> DrawnStrip {
+    let along_t = |s: f64| move |at: &[f64]| strip.points(patches, &at.iter().map(|&t| [s, t]).collect::<Vec<_>>());
+    let across = |t: f64| move |at: &[f64]| strip.points(patches, &at.iter().map(|&s| [s, t]).collect::<Vec<_>>());
+    let side = |left: usize| move |at: &[f64]| at.iter().map(|&t| strip.side(patches, left, t)).collect::<Vec<_>>();
+    let cut = shares(&[&across(0.0), &across(0.5), &across(1.0)], 0.5 * tolerance, 4);
+    let ends = [0.0, 1.0].map(|t| (across(t)(&cut), cut.clone()));
+    let cut = shares(&[&side(0), &side(1), &along_t(0.5)], 0.5 * tolerance, 4);
+    DrawnStrip { across: ends, along: [0, 1].map(|left| (side(left)(&cut), cut.clone())) }
+}
+
 #[derive(Default)]
 struct Curves {
     /// The vertex of the polyhedron itself, where it is kept.
@@ -160,48 +180,49 @@ impl Loom<'_> {
             };
             ends.push((0..m).map(|k| corner(k, &mut self.woven)).collect());
         }
-        for (c, cluster) in layout.clusters.iter().enumerate() {
+        let patches = &layout.patches;
+        let draw_side = |c: usize, k: usize| {
+            let [low, high] = layout.side_range(c, k);
+            let curve = |at: &[f64]| at.iter().map(|x| patches[c].border(k, low + x * (high - low))).collect();
+            let cut = shares(&[&curve], self.tolerance, 4);
+            (curve(&cut), cut)
+        };
+        let draw_sides = |c: usize| (0..layout.clusters[c].sides()).map(|k| draw_side(c, k)).collect();
+        let drawn: Vec<Vec<Drawn>> = (0..patches.len()).into_par_iter().map(draw_sides).collect();
+        let drawn_strips: Vec<_> = layout.strips.par_iter().map(|s| draw_strip(s, patches, self.tolerance)).collect();
+        for ((cluster, ends), sides) in layout.clusters.iter().zip(&ends).zip(drawn) {
             let m = cluster.sides();
-            let sides = (0..m).map(|k| {
-                let [low, high] = layout.side_range(c, k);
-                let curve = |x: f64| layout.patches[c].border(k, low + x * (high - low));
+            let number = |(k, side): (usize, Drawn)| {
                 let place = Place::Face(solid.halfedges[cluster.open[k] as usize].face);
-                self.row(shares(&[&curve], self.tolerance, 4), &curve, [ends[c][k][1], ends[c][(k + 1) % m][0]], place)
-            });
-            let sides = sides.collect();
+                self.number(side, [ends[k][1], ends[(k + 1) % m][0]], place)
+            };
+            let sides = sides.into_iter().enumerate().map(number).collect();
             self.curves.sides.push(sides);
         }
-        for (s, strip) in layout.strips.iter().enumerate() {
-            let patches = &layout.patches;
+        for (strip, drawn) in layout.strips.iter().zip(drawn_strips) {
             let at = |end: usize| ends[strip.ends[end].0][strip.ends[end].1];
             // Right and left seen along the edge from the first patch to the second.
             let [first, second] = [at(0), [at(1)[1], at(1)[0]]];
-            let across = |t: f64| move |x: f64| strip.point(patches, x, t);
-            let places = shares(&[&across(0.0), &across(0.5), &across(1.0)], 0.5 * self.tolerance, 4);
-            let rows =
-                [(0.0, first), (1.0, second)].map(|(t, ends)| self.row(places.clone(), &across(t), ends, Place::Blend));
+            let [start, end] = drawn.across;
+            let rows = [(start, first), (end, second)].map(|(row, ends)| self.number(row, ends, Place::Blend));
             self.curves.across.push(rows);
-            let side = |left: usize| move |t: f64| strip.side(patches, left, t);
-            let middle = |t: f64| strip.point(patches, 0.5, t);
-            let places = shares(&[&side(0), &side(1), &middle], 0.5 * self.tolerance, 4);
             let h = layout.clusters[strip.ends[0].0].open[strip.ends[0].1];
             let [left, right] = [h, solid.halfedges[h as usize].twin].map(|h| solid.halfedges[h as usize].face);
-            let rows = [(0, right), (1, left)]
-                .map(|(i, face)| self.row(places.clone(), &side(i), [first[i], second[i]], Place::Face(face)));
-            debug_assert!(s == self.curves.along.len());
+            let [on_right, on_left] = drawn.along;
+            let rows = [(0, on_right, right), (1, on_left, left)]
+                .map(|(i, row, face)| self.number(row, [first[i], second[i]], Place::Face(face)));
             self.curves.along.push(rows);
         }
     }
 
-    fn row(&mut self, shares: Vec<f64>, curve: &dyn Fn(f64) -> DVec3, ends: [VertexId; 2], place: Place) -> Row {
-        let last = shares.len() - 1;
-        let vertices = (0..=last).map(|i| match i {
+    fn number(&mut self, (points, shares): Drawn, ends: [VertexId; 2], place: Place) -> Row {
+        let last = points.len() - 1;
+        let vertex = |(i, point)| match i {
             0 => ends[0],
             _ if i == last => ends[1],
-            _ => self.woven.vertex(curve(shares[i]), place),
-        });
-        let vertices = vertices.collect();
-        (shares, vertices)
+            _ => self.woven.vertex(point, place),
+        };
+        (shares, points.into_iter().enumerate().map(vertex).collect())
     }
 
     /// The boundary of a planar face, beginning at a halfedge of one of its loops.
@@ -254,21 +275,8 @@ impl Loom<'_> {
         let (strip, patches) = (&self.layout.strips[s], &self.layout.patches);
         let ([start, end], [right, left]) = (&self.curves.across[s], &self.curves.along[s]);
         let (columns, rows) = (start.0.len(), right.0.len());
-        let [mut first, mut second] = [vec![], vec![]];
-        let mut weights = vec![];
-        for &t in &right.0[1..rows - 1] {
-            for &x in &start.0[1..columns - 1] {
-                let [p, q] = strip.domain(patches, x, t);
-                first.push(p);
-                second.push(q);
-                weights.push(strip.params.weight(t));
-            }
-        }
-        let mut ends = [vec![], vec![]];
-        patches[strip.ends[0].0].points(&first, &mut ends[0]);
-        patches[strip.ends[1].0].points(&second, &mut ends[1]);
-        let [a, b] = &ends;
-        let points = weights.iter().zip(a.iter().zip(b)).map(|(&f, (&a, &b))| f * a + (1.0 - f) * b).collect();
+        let inner = |t: f64| start.0[1..columns - 1].iter().map(move |&s| [s, t]);
+        let points = strip.points(patches, &right.0[1..rows - 1].iter().flat_map(|&t| inner(t)).collect::<Vec<_>>());
         let vertex = |row: usize, column: usize| {
             if row == 0 {
                 start.1[column]

@@ -37,7 +37,8 @@ pub fn map_free<M: Adjacency + Positions + Sync>(mesh: &M) -> Result<VertexMap<D
     (0..).zip(&used).for_each(|(i, &v)| index[v] = i);
     let rim: Vec<usize> = loops[0].iter().map(|&h| index[mesh.tail(h)] as usize).collect();
     let lower = energy(mesh, &used, &index);
-    let factor = Cholesky::complex(&lower).map_err(|i| Error::Singular { vertex: used[i], at: mesh.position(used[i]) })?;
+    let factor =
+        Cholesky::complex(&lower).map_err(|i| Error::Singular { vertex: used[i], at: mesh.position(used[i]) })?;
     let z = smallest(&factor, used.len(), &rim);
     let mut map: VertexMap<DVec2> = VertexMap::filled(mesh.vertex_count(), DVec2::ZERO);
     used.iter().zip(&z).for_each(|(&v, z)| map[v] = DVec2::new(z.re, z.im));

@@ -213,6 +213,10 @@ pub fn blend(
 
 /// How often places may be mended before the blend is given up.
 const ROUNDS: usize = 14;
+/// From which round on a blend is given up that has more than a `FEW` places of trouble, and more than half of those it
+/// had at first.
+const TELLING: usize = 4;
+const FEW: usize = 32;
 
 /// Rolls, cuts, sweeps, sews and checks; where a stage refuses, softens the linkages or shrinks the ball and begins
 /// again with the rails concerned.
@@ -227,6 +231,7 @@ fn attempt(
     let step = step_length(mesh, curves, params);
     let mut network = Network::of(mesh, curves, REACH_AHEAD * params.radius);
     let mut rails: Vec<Option<Rail>> = curves.iter().map(|_| None).collect();
+    let mut at_first = None;
     for round in 0.. {
         watch.step("blend", round as f64 / rounds as f64)?;
         let trouble = match roll_missing(mesh, curves, &network, params, &mends, step, &mut rails)
@@ -246,7 +251,10 @@ fn attempt(
             continue;
         }
         let Trouble::Places { ref places, .. } = trouble else { return Err(trouble) };
-        if params.overlap == Overlap::Error && round >= 2 || round >= rounds || !mends.add(places, params.overlap) {
+        let first = *at_first.get_or_insert(places.len());
+        let hopeless = round >= TELLING && places.len() > FEW && 2 * places.len() > first;
+        let refused = params.overlap == Overlap::Error && round >= 2;
+        if refused || hopeless || round >= rounds || !mends.add(places, params.overlap) {
             return Err(trouble);
         }
         for rail in &mut rails {
