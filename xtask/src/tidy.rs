@@ -22,6 +22,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("rbf-solve", &["faer"]),
     ("lmc-tessellate", &["mesh-core", "mesh-query"]),
     ("remesh", &["mesh-core", "mesh-query", "faer"]),
+    ("detail-transfer", &["mesh-core", "mesh-query", "param-conformal", "remesh", "faer"]),
     ("edge-cluster", &["mesh-core", "profile-nurbs", "spade"]),
     ("render", &["mesh-core", "mesh-query", "image"]),
     (
@@ -37,6 +38,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "rbf-solve",
             "lmc-tessellate",
             "remesh",
+            "detail-transfer",
             "edge-cluster",
             "render",
             "serde",
