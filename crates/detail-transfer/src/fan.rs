@@ -1,4 +1,4 @@
-//! Geodesic fans: what the detail around a vertex looks like, branch by branch ([ZelinkaGarland2004]).
+//! Geodesic fans: what the detail around a vertex looks like, branch by branch.
 
 use crate::relief::Relief;
 use glam::DVec2;
