@@ -2,7 +2,7 @@
 
 use crate::clustering::Cluster;
 use crate::length::{
-    Length, angle, angle_or_none, direction, mesh_and_loop, plane, point, positive_length, share, snap,
+    Length, Radius, angle, angle_or_none, direction, mesh_and_loop, plane, point, positive_length, radius, share, snap,
 };
 use crate::place::Place;
 use crate::rolling::Rolling;
@@ -159,9 +159,10 @@ pub struct Join {
     pub target: Target,
     #[command(flatten)]
     pub source: Source,
-    /// Blend the seam with a ball of this radius
-    #[arg(long, value_name = "R", value_parser = positive_length)]
-    pub radius: Option<Length>,
+    /// Blend the seam with a ball of this radius; with `R1,R2` its centre keeps R1 from the first part and R2 from the
+    /// other
+    #[arg(long, value_name = "R[,R2]", value_parser = radius)]
+    pub radius: Option<Radius>,
     #[command(flatten)]
     pub rolling: Rolling,
 }
@@ -181,9 +182,10 @@ pub struct Blend {
     pub origins: Option<PathBuf>,
     #[command(flatten)]
     pub source: Source,
-    /// Radius of the ball
-    #[arg(long, value_name = "R", value_parser = positive_length, required_unless_present = "max_radius")]
-    pub radius: Option<Length>,
+    /// Radius of the ball; with `R1,R2` its centre keeps R1 from the side to the left of a curve and R2 from the other,
+    /// seen from outside along the points that `features` lists
+    #[arg(long, value_name = "R[,R2]", value_parser = radius, required_unless_present = "max_radius")]
+    pub radius: Option<Radius>,
     /// Print the largest radius with which the curves can be blended, and what is in the way of a larger one; write nothing
     #[arg(long, conflicts_with_all = ["radius", "output"])]
     pub max_radius: bool,

@@ -49,6 +49,25 @@ pub fn positive_length(text: &str) -> Result<Length, String> {
     Ok(length)
 }
 
+/// Radii as typed: one, or one for each side of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Radius {
+    /// Left and right.
+    pub sides: [Length; 2],
+}
+
+/// A radius, or two with a comma between.
+pub fn radius(text: &str) -> Result<Radius, String> {
+    let (left, right) = text.split_once(',').unwrap_or((text, text));
+    Ok(Radius { sides: [positive_length(left)?, positive_length(right)?] })
+}
+
+/// A radius at a place, `x,y,z=R`.
+pub fn radius_at(text: &str) -> Result<(DVec3, Length), String> {
+    let (at, radius) = text.split_once('=').ok_or("a radius at a place is X,Y,Z=R, such as 0,1.5,-2=0.25")?;
+    Ok((point(at)?, positive_length(radius)?))
+}
+
 /// A point or direction, `x,y,z`.
 pub fn point(text: &str) -> Result<DVec3, String> {
     let numbers: Vec<f64> = text.split(',').map_while(|n| n.trim().parse().ok()).collect();

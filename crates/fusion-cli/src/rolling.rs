@@ -1,8 +1,10 @@
 //! How a ball is rolled, as typed: the options that `blend` and the booleans share.
 
 use crate::failure::Failure;
+use crate::length::{Length, Radius, radius_at};
 use clap::{Args, ValueEnum};
 use fusion::{Profile, Solver, blend, profile_from_text};
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 
 /// Options of every verb that blends.
@@ -14,6 +16,10 @@ pub struct Rolling {
     /// `,reach=R` behind it the apex is moved out to R radii from the ball's centre
     #[arg(long, value_name = "PROFILE", default_value = "arc", value_parser = section, requires = "radius")]
     pub profile: Section,
+    /// The radius at the place of a curve nearest to X,Y,Z; may be given more than once. Between such places it changes
+    /// smoothly, to that of --radius at the ends of an open curve and half-way round a closed one with a single place
+    #[arg(long, value_name = "X,Y,Z=R", value_parser = radius_at, requires = "radius", allow_hyphen_values = true)]
+    pub radius_at: Vec<(DVec3, Length)>,
     /// What to do where a full-size ball does not fit
     #[arg(long, value_enum, default_value_t = Overlap::Shrink, requires = "radius")]
     pub overlap: Overlap,
@@ -33,9 +39,12 @@ pub struct Rolling {
 }
 
 impl Rolling {
-    /// The same for the library, for a ball of `radius` in model units.
-    pub fn with_radius(&self, radius: f64) -> Result<blend::Params, Failure> {
+    /// The same for the library; `diagonal` is what lengths may be a share of.
+    pub fn with_radius(&self, radius: Radius, diagonal: f64) -> Result<blend::Params, Failure> {
+        let at: Vec<_> = self.radius_at.iter().map(|&(p, r)| (p, r.resolve(diagonal))).collect();
+        let (radius, radii) = blend::Radii::of(radius.sides.map(|r| r.resolve(diagonal)), &at);
         Ok(blend::Params {
+            radii,
             profile: self.profile.curve.profile()?,
             reach: self.profile.reach,
             overlap: match self.overlap {

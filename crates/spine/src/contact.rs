@@ -11,7 +11,7 @@ use mesh_query::ClosestPoint;
 pub struct Contact {
     /// Centre.
     pub center: DVec3,
-    /// Radius at the centre, in model units.
+    /// Radius at the centre, in model units: the larger of the two where the sides have different ones.
     pub radius: f64,
     /// Where it touches the left and the right patch.
     pub feet: [ClosestPoint; 2],
@@ -36,11 +36,13 @@ impl Contact {
         };
         let feet = [foot(0)?, foot(1)?];
         let (r, slope) = radius.at(center);
-        let residual = (feet[0].distance - r).abs().max((feet[1].distance - r).abs());
+        let off = |side: usize| (feet[side].distance - r * radius.sides[side]).abs();
+        let residual = off(0).max(off(1));
         residual.is_finite().then_some((Self { center, radius: r, feet, residual }, slope))
     }
 
-    /// Seats the ball: damped Newton on { distance to left = r, distance to right = r }, each step the shortest that
+    /// Seats the ball: damped Newton on { distance to left = r, distance to right = r }, each r as the field has it for
+    /// that side, each step the shortest that
     /// solves the linearised pair, so that the centre stays nearest to the guess.
     ///
     /// `known` are points of the patches near which the feet are expected; they only save time.
@@ -59,7 +61,7 @@ impl Contact {
             if here.residual <= SEATED * here.radius {
                 return Some(here);
             }
-            let mut step = here.newton_step(slope)?.clamp_length_max(0.5 * here.radius);
+            let mut step = here.newton_step(radius.sides, slope)?.clamp_length_max(0.5 * here.radius);
             let known = Some(here.feet.map(|f| f.point));
             let mut next = Self::at(mesh, patches, radius, here.center + step, known)?;
             // A foot that jumps to another facet can make a full step worse; half steps then find the new facet.
@@ -97,9 +99,10 @@ impl Contact {
         a.cross(b).try_normalize()
     }
 
-    fn newton_step(&self, slope: DVec3) -> Option<DVec3> {
-        let [a, b] = self.normals().map(|n| n - slope);
-        let [fa, fb] = self.feet.map(|f| self.radius - f.distance);
+    fn newton_step(&self, sides: [f64; 2], slope: DVec3) -> Option<DVec3> {
+        let normals = self.normals();
+        let [a, b] = [0, 1].map(|i| normals[i] - sides[i] * slope);
+        let [fa, fb] = [0, 1].map(|i| self.radius * sides[i] - self.feet[i].distance);
         let (aa, ab, bb) = (a.dot(a), a.dot(b), b.dot(b));
         let det = aa * bb - ab * ab;
         // sin² of the angle between the offsets: below this they meet within 0.1 degree of tangency.

@@ -17,6 +17,7 @@
 //! |---|---|
 //! | `curve.rs` | blend curves: chains of edges, ridge or valley |
 //! | `radius.rs` | the ball's radius as a field in space |
+//! | `law.rs` | how it varies along the curve |
 //! | `patch.rs` | the two sides of a curve, flooded to α·r |
 //! | `contact.rs` | one ball at rest against both, by Newton on closest points |
 //! | `march.rs` | the ball along the whole curve |
@@ -27,6 +28,7 @@
 mod contact;
 mod curve;
 mod fair;
+mod law;
 mod march;
 mod offset;
 mod patch;
@@ -36,6 +38,7 @@ mod regress;
 pub use contact::Contact;
 pub use curve::{BlendCurve, Convexity};
 pub use fair::{Sample, Softening};
+pub use law::Law;
 pub use offset::{OffsetKeep, OffsetParams};
 pub use patch::{Patch, Side};
 pub use radius::{Dip, RadiusField};

@@ -237,11 +237,14 @@ fn first_contact<M: Adjacency + Positions>(
             continue;
         }
         let r = radius.at(middle).0;
-        let center = middle + side * r * (left + right) / spread;
-        let miss = patches
-            .iter()
-            .map(|p| p.closest(mesh, center).map_or(f64::INFINITY, |c| (c.distance - r).abs() / r))
-            .fold(0.0, f64::max);
+        let [one, other] = radius.sides.map(|share| r * share);
+        let mean = 0.5 * (one + other) / spread * (left + right);
+        let skew = 0.5 * (one - other) / (2.0 - spread).max(0.02) * (left - right);
+        let center = middle + side * (mean + skew);
+        let miss = |i: usize| {
+            patches[i].closest(mesh, center).map_or(f64::INFINITY, |c| (c.distance - r * radius.sides[i]).abs() / r)
+        };
+        let miss = miss(0).max(miss(1));
         guesses.push((miss, center, (b - a).normalize_or_zero()));
     }
     guesses.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -67,7 +67,8 @@ pub(crate) fn trace<M: Adjacency + Positions + Sync>(
         Convexity::Concave => 1.0,
         Convexity::Convex => -1.0,
     };
-    let offset = |k: usize| MovedPatch::new(mesh, &base.patches[k], base.barriers, radius, side, params.keep);
+    let offset =
+        |k: usize| MovedPatch::new(mesh, &base.patches[k], base.barriers, &radius.of_side(k), side, params.keep);
     let (left, right) = rayon::join(|| offset(0), || offset(1));
     // What could fail, faces without area and numbers that are not finite, has been left out.
     let crossings = match (&left, &right) {

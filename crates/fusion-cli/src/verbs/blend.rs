@@ -23,7 +23,7 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     let params = round::Params {
         features: features::Params { angle: args.angle, ..features::Params::default() },
         near: args.near.clone(),
-        blend: args.rolling.with_radius(radius.resolve(joint_diagonal(models)))?,
+        blend: args.rolling.with_radius(radius, joint_diagonal(models))?,
         format: destination.format,
     };
     let name = args.input.display();

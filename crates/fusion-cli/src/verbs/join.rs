@@ -9,7 +9,7 @@ use fusion::{Error, Operation, join};
 pub fn run(session: &Session, args: &Args, operation: Operation) -> Result<(), Failure> {
     let destination = Destination::check(&args.target, session)?;
     let models = session.read_all(&args.inputs, &args.source)?;
-    let blend = args.radius.map(|r| args.rolling.with_radius(r.resolve(joint_diagonal(&models)))).transpose()?;
+    let blend = args.radius.map(|r| args.rolling.with_radius(r, joint_diagonal(&models))).transpose()?;
     let params = join::Params { operation, blend, format: destination.format };
     let mut outcome = join(&models, &params, session.watch()).map_err(|e| explain(&e, args))?;
     let report = &mut outcome.report;

@@ -6,7 +6,9 @@ use super::stretch::{Ending, Outward, Stretch};
 use super::strip::{Fineness, profile_points};
 use super::trouble::Trouble;
 use glam::DVec3;
-use mesh_core::{Adjacency, Connected, EdgeId, FaceId, Faces, HalfedgeId, Positions, SurfacePoint, TriMesh};
+use mesh_core::{
+    Adjacency, Connected, EdgeId, FaceId, Faces, HalfedgeId, Positions, SurfacePoint, TriMesh, face_normal,
+};
 use mesh_query::TriBvh;
 use profile_nurbs::Profile;
 use spine::{BlendCurve, Rail, Sample};
@@ -34,6 +36,8 @@ pub(crate) struct Ends<'a> {
 const SMALLEST: f64 = 0.1;
 /// How far from the node the tip is, as a share of the base radius.
 const TIP_GAP: f64 = 0.05;
+/// Least cosine between the normals of the surface ahead and that of its part at the node.
+const GRAZING: f64 = 0.2;
 
 impl Ends<'_> {
     /// Cuts every rail to length. A closed rail that is not among `kept` is left out.
@@ -175,20 +179,23 @@ impl Ends<'_> {
         let mut at = view.nearest(place);
         for _ in 0..view.len() {
             let ball = self.between(rail, if dart.end == 0 { at } else { (view.len() - 1) as f64 - at });
-            let out = (view.sample(at).center - view.sample(view.advance(at, 0.5 * radius)).center).normalize_or_zero();
+            let along = view.sample(at).center - view.sample(view.advance(at, 0.5 * radius)).center;
+            // Tangent to both sides, as the spine is not where the radius changes.
+            let [a, b] = [0, 1].map(|side: usize| ball.center - ball.feet[side].point);
+            let out = along.project_onto(a.cross(b)).normalize_or(along.normalize_or_zero());
             profile_points(self.profile, &ball, ball.feet.map(|f| f.point), self.fineness, &mut row);
             // Seen from behind the profile, so that points which are already through are noticed.
             let behind = 3.0 * radius;
-            let ahead: Option<Vec<_>> = row
+            // The feet are on the edge of that surface, and are found there.
+            let ahead: Option<Vec<_>> = row[1..row.len() - 1]
                 .iter()
                 .map(|&p| {
                     let hit = surface.ray_cast(mesh, p - behind * out, out, 8.0 * radius)?;
                     Some((hit.t - behind, SurfacePoint::Face { face: hit.face, barycentric: hit.barycentric }))
                 })
                 .collect();
-            let inner = ahead.as_ref().map(|a| &a[1..a.len() - 1]);
-            let clear = inner.is_some_and(|a| a.iter().all(|h| h.0 > 0.3 * self.fineness.chord));
-            if let (true, Some(hits)) = (clear, inner) {
+            let clear = ahead.as_ref().is_some_and(|a| a.iter().all(|h| h.0 > 0.3 * self.fineness.chord));
+            if let (true, Some(hits)) = (clear, ahead) {
                 let side_of = |side: usize| {
                     let crease = &creases[usize::from(side != dart.end)];
                     let foot = row[if side == 0 { 0 } else { row.len() - 1 }];
@@ -238,6 +245,9 @@ impl Ends<'_> {
                 }
             }
         }
+        // Of all these, those that face the way of the ones at the node: a ray that grazes a side must not end there.
+        let facing = beyond.iter().map(|&f| face_normal(mesh, f)).sum::<DVec3>().normalize_or_zero();
+        faces.retain(|&f| face_normal(mesh, f).dot(facing) > GRAZING);
         TriBvh::build_subset(mesh, &faces).map_err(|e| Trouble::Spine(e.into()))
     }
 }

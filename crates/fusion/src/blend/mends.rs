@@ -6,7 +6,9 @@ use spine::{Dip, RadiusField, Rail, Softening};
 
 /// What has been done so far to make the blend fit.
 pub(super) struct Mends {
-    pub radius: RadiusField,
+    /// The full radius, in model units.
+    radius: f64,
+    dips: Vec<Dip>,
     pub softenings: Vec<Softening>,
     /// Places and how often each has been mended.
     spots: Vec<(DVec3, u32)>,
@@ -16,14 +18,14 @@ pub(super) struct Mends {
 
 impl Mends {
     pub fn new(radius: f64) -> Self {
-        Self { radius: RadiusField::constant(radius), softenings: Vec::new(), spots: Vec::new(), fresh: Vec::new() }
+        Self { radius, dips: Vec::new(), softenings: Vec::new(), spots: Vec::new(), fresh: Vec::new() }
     }
 
     /// Mends each place: the first time by smoothing the linkages more, then by a smaller ball. False when a ball a
     /// tenth of the size has not helped.
     pub fn add(&mut self, places: &[DVec3], overlap: Overlap) -> bool {
         self.fresh.clear();
-        let r = self.radius.base;
+        let r = self.radius;
         for &place in places {
             let near = (0..self.spots.len()).find(|&i| self.spots[i].0.distance(place) < 2.0 * r);
             let spot = near.unwrap_or_else(|| {
@@ -36,12 +38,12 @@ impl Mends {
             }
         }
         self.softenings.clear();
-        self.radius.dips.clear();
+        self.dips.clear();
         for &(at, count) in &self.spots {
             let extent = r * (3.0 + 0.5 * f64::from(count));
             self.softenings.push(Softening { at, extent, extra: 0.3 * r * f64::from(count.min(3)) });
             if count > 1 && overlap == Overlap::Shrink {
-                self.radius.dips.push(Dip { at, factor: 0.7f64.powf(f64::from(count - 1)), extent });
+                self.dips.push(Dip { at, factor: 0.7f64.powf(f64::from(count - 1)), extent });
             }
         }
         self.spots.iter().all(|s| s.1 < 8)
@@ -50,20 +52,34 @@ impl Mends {
     pub fn touches(&self, rail: &Rail) -> bool {
         self.fresh.iter().any(|&i| {
             let (at, count) = self.spots[i];
-            let extent = self.radius.base * (3.0 + 0.5 * f64::from(count));
+            let extent = self.radius * (3.0 + 0.5 * f64::from(count));
             rail.samples.iter().any(|s| s.center.distance(at) < extent)
         })
     }
 
-    pub fn account_for(&self, rails: &[Option<Rail>], blended: &mut Blended) {
-        blended.shrunk = self.radius.dips.iter().map(|d| (d.at, self.radius.at(d.at).0)).collect();
+    /// The field with all dips made so far.
+    pub fn applied_to(&self, field: &RadiusField) -> RadiusField {
+        RadiusField { dips: self.dips.clone(), ..field.clone() }
+    }
+
+    /// `fields` are those of the rails, without dips.
+    pub fn account_for(&self, rails: &[Option<Rail>], fields: &[RadiusField], blended: &mut Blended) {
+        let shrunk = |dip: &Dip| {
+            let distance = |rail: &Option<Rail>| {
+                rail.iter().flat_map(|r| &r.samples).map(|s| s.center.distance(dip.at)).fold(f64::INFINITY, f64::min)
+            };
+            let nearest = rails.iter().map(distance).zip(fields).min_by(|a, b| a.0.total_cmp(&b.0));
+            (dip.at, nearest.map_or(self.radius, |(_, field)| self.applied_to(field).at(dip.at).0))
+        };
+        blended.shrunk = self.dips.iter().map(shrunk).collect();
         let (mut full, mut total) = (0.0, 0.0);
-        for rail in rails.iter().flatten() {
+        for (rail, field) in rails.iter().zip(fields) {
+            let Some(rail) = rail else { continue };
             let next = rail.samples.iter().skip(1).chain(rail.samples.first().filter(|_| rail.closed));
             for (s, next) in rail.samples.iter().zip(next) {
                 let length = s.center.distance(next.center);
                 total += length;
-                if s.radius >= 0.999 * self.radius.base {
+                if s.radius >= 0.999 * field.undipped(s.center).0 {
                     full += length;
                 }
             }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `mod.rs` | the stages, and the loop that makes the ball smaller where it does not fit |
 //! | `limit.rs` | the largest radius that fits |
+//! | `radii.rs` | how the radius varies along a curve and between its sides |
 //! | `mends.rs` | what has been done so far to make the blend fit |
 //! | `network.rs` | the nodes at which open curves meet or end |
 //! | `ending.rs` | rails cut to length there: set back, run out, or stopped at the surface ahead |
@@ -26,6 +27,7 @@ mod linkage;
 mod mends;
 mod network;
 mod plate;
+mod radii;
 mod sew;
 mod stretch;
 mod strip;
@@ -42,6 +44,7 @@ use mesh_core::{
 };
 use network::{Kind, Network};
 use profile_nurbs::Profile;
+pub use radii::Radii;
 use rayon::prelude::*;
 use sew::{between, sew};
 use spine::{BlendCurve, Dip, RadiusField, Rail, Solver, roll};
@@ -51,8 +54,10 @@ use trouble::Trouble;
 /// How curves are blended.
 #[derive(Clone, Debug)]
 pub struct Params {
-    /// Ball radius, in model units. Positive and finite.
+    /// Ball radius, in model units; the largest one where it varies. Positive and finite.
     pub radius: f64,
+    /// How it varies.
+    pub radii: Radii,
     /// Cross-section of the blend.
     pub profile: Profile,
     /// Distance of the apex from the ball's centre in radii, if it is moved out along its line; see
@@ -99,6 +104,7 @@ impl Params {
     pub fn new(radius: f64) -> Self {
         Self {
             radius,
+            radii: Radii::default(),
             profile: Profile::Arc,
             reach: None,
             overlap: Overlap::default(),
@@ -156,6 +162,11 @@ pub enum Error {
     /// The ball could not be rolled for a reason that no smaller radius mends.
     #[error(transparent)]
     Spine(#[from] spine::Error),
+    /// A corner of a blend with two radii.
+    #[error(
+        "three or more curves meet at {0}, where a blend with two radii has no corner; blend the curves in several calls, or with one radius"
+    )]
+    TwoRadiiMeet(DVec3),
     /// Vertices cannot be slid onto the surface.
     #[error(transparent)]
     Keep(#[from] keep::Refusal),
@@ -227,18 +238,23 @@ fn attempt(
     rounds: usize,
     watch: &Watch,
 ) -> Result<Blended, Trouble> {
+    let fields = params.radii.fields(mesh, curves, params.radius);
     let mut mends = Mends::new(params.radius);
     let step = step_length(mesh, curves, params);
     let mut network = Network::of(mesh, curves, REACH_AHEAD * params.radius);
+    let meeting = network.nodes.iter().find(|n| n.darts.len() > 2 && !params.radii.is_even());
+    if let Some(node) = meeting {
+        return Err(Trouble::TwoRadiiMeet(mesh.position(node.vertex)));
+    }
     let mut rails: Vec<Option<Rail>> = curves.iter().map(|_| None).collect();
     let mut at_first = None;
     for round in 0.. {
         watch.step("blend", round as f64 / rounds as f64)?;
-        let trouble = match roll_missing(mesh, curves, &network, params, &mends, step, &mut rails)
+        let trouble = match roll_missing(mesh, curves, &network, params, &fields, &mends, step, &mut rails)
             .and_then(|()| assemble(mesh, curves, &network, params, step, &rails, watch))
         {
             Ok(mut blended) => {
-                mends.account_for(&rails, &mut blended);
+                mends.account_for(&rails, &fields, &mut blended);
                 return Ok(blended);
             }
             Err(trouble) => trouble,
@@ -270,7 +286,7 @@ fn attempt(
 /// the tolerance asks for it.
 fn step_length(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params) -> f64 {
     // An arc of radius r has the sagitta s on a chord of √(8·s·r); 0.005·r is that of 0.2·r.
-    let widest = params.radius * (8.0 * params.tolerance.clamp(1e-6, 0.005)).sqrt();
+    let widest = params.radius * params.radii.least() * (8.0 * params.tolerance.clamp(1e-6, 0.005)).sqrt();
     let mut edges: Vec<f64> = curves
         .iter()
         .flat_map(|c| &c.halfedges)
@@ -293,12 +309,13 @@ fn roll_missing(
     curves: &[BlendCurve],
     network: &Network,
     params: &Params,
+    fields: &[RadiusField],
     mends: &Mends,
     step: f64,
     rails: &mut [Option<Rail>],
 ) -> Result<(), Trouble> {
     let spine_params = |curve: usize| spine::Params {
-        radius: running_out(mesh, curves, network, curve, mends.radius.clone()),
+        radius: running_out(mesh, curves, network, curve, mends.applied_to(&fields[curve])),
         walls: network.walls(mesh, curve),
         alpha: params.alpha,
         solver: params.solver,
@@ -365,7 +382,8 @@ fn assemble(
     rails: &[Option<Rail>],
     watch: &Watch,
 ) -> Result<Blended, Trouble> {
-    let fineness = Fineness { tolerance: params.tolerance, chord: step, reach: params.reach };
+    let fineness =
+        Fineness { tolerance: params.tolerance, chord: step, reach: params.reach, sides: params.radii.sides };
     let ends = Ends { mesh, curves, network, profile: &params.profile, fineness };
     let layout = ends.lay_out(rails, &distinct(rails, step))?;
     let opened = cut_linkages(mesh, network, &layout, params.snap, params.radius, watch)?;

@@ -17,6 +17,8 @@ pub(crate) enum Trouble {
     },
     /// Nodes at which a curve cannot stop at the surface ahead: it has to run out.
     NoStop(Vec<usize>),
+    /// The place of a corner between curves with two radii.
+    TwoRadiiMeet(DVec3),
     /// The curves could not be embedded for another reason.
     Embed(EmbedError),
     /// The rolling itself failed for a reason without a place.
@@ -34,6 +36,7 @@ impl Trouble {
             }
             // Every such node was made to run out, so this is not reached with any left.
             Self::NoStop(_) => Error::NoCurves,
+            Self::TwoRadiiMeet(at) => Error::TwoRadiiMeet(at),
             Self::Embed(e) => e.into(),
             Self::Spine(e) => e.into(),
             Self::Cancelled(c) => c.into(),

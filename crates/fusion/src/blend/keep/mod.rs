@@ -67,7 +67,7 @@ pub fn blend(
     let mut regions = Vec::with_capacity(curves.len());
     let mut places = region::Places::new(mesh);
     for (curve, rail) in curves.iter().zip(&rails) {
-        let target = Target::new(rail, &params.profile, params.reach)?;
+        let target = Target::new(rail, params)?;
         let region = Region::around(mesh, curve, rail, &target, &mut places)?;
         regions.push((region, target));
     }
@@ -106,10 +106,12 @@ fn roll_all(
     params: &BlendParams,
     how: &Params,
 ) -> Result<Vec<Rail>, Error> {
-    let rolled = curves.par_iter().map(|curve| {
+    let fields = params.radii.fields(mesh, curves, params.radius);
+    let rolled = curves.par_iter().zip(&fields).map(|(curve, field)| {
         let with_step = |step: f64| {
+            let (alpha, solver) = (params.alpha, params.solver);
             let rolling =
-                spine::Params { alpha: params.alpha, solver: params.solver, step, ..spine::Params::new(params.radius) };
+                spine::Params { radius: field.clone(), alpha, solver, step, ..spine::Params::new(params.radius) };
             roll(mesh, curve, curves, &rolling)
         };
         let step = (curve.length(mesh) / f64::from(how.samples.max(8))).min(0.5 * params.radius);

@@ -1,9 +1,10 @@
 //! The virtual surface S(t, u) through the profiles of a rail, t around and u across, and the linkages as its borders.
 
 use super::refusal::Refusal;
+use crate::blend::Params as BlendParams;
 use crate::blend::strip::section;
 use glam::{DVec2, DVec3};
-use profile_nurbs::{Profile, Sweep};
+use profile_nurbs::Sweep;
 use spine::Rail;
 
 /// The surface that vertices are moved to.
@@ -26,7 +27,7 @@ pub(super) struct Target {
     turns: Vec<f64>,
     /// The greatest curvature of a linkage, in 1/model unit.
     pub bend: f64,
-    /// The ball's, where the rail begins.
+    /// The smallest ball's.
     pub radius: f64,
 }
 
@@ -34,7 +35,8 @@ pub(super) struct Target {
 const STEPS: usize = 64;
 
 impl Target {
-    pub fn new(rail: &Rail, profile: &Profile, reach: Option<f64>) -> Result<Self, Refusal> {
+    pub fn new(rail: &Rail, params: &BlendParams) -> Result<Self, Refusal> {
+        let (profile, reach, sides) = (&params.profile, params.reach, params.radii.sides);
         let samples = &rail.samples;
         let n = samples.len();
         let (mut stations, mut run) = (Vec::with_capacity(n + 1), 0.0);
@@ -47,7 +49,7 @@ impl Target {
                 .fold(here.center.distance(next.center), f64::max);
         }
         stations.push(run);
-        let sections: Vec<_> = samples.iter().map(|s| section(s.center, s.feet.map(|f| f.point))).collect();
+        let sections: Vec<_> = samples.iter().map(|s| section(s.center, s.feet.map(|f| f.point), sides)).collect();
         let closed = |i: usize| &sections[i % n];
         let feet = [0, 1].map(|side: usize| (0..=n).map(|i| [closed(i).p1, closed(i).p2][side]).collect());
         let turns = (0..=n).map(|i| closed(i).angle()).collect();
@@ -65,7 +67,8 @@ impl Target {
         let sweep = Sweep::new(stations.clone(), curves)
             .map_err(|source| Refusal::Profile { at: samples[0].center, source })?;
         let across = lengths.iter().sum::<f64>() / n as f64;
-        Ok(Self { sweep, stations, feet, outward, longest, even, across, turns, bend, radius: samples[0].radius })
+        let radius = samples.iter().map(|s| s.radius).fold(f64::INFINITY, f64::min);
+        Ok(Self { sweep, stations, feet, outward, longest, even, across, turns, bend, radius })
     }
 
     /// Length all round, in t.

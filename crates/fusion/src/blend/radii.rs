@@ -1,0 +1,83 @@
+//! How the radius varies: from place to place along a curve, and from one side to the other.
+
+use glam::DVec3;
+use mesh_core::{Connected, Faces, Positions, TriMesh};
+use spine::{BlendCurve, Law, RadiusField};
+use std::sync::Arc;
+
+/// How the radius varies, in shares of [`super::Params::radius`], the largest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Radii {
+    /// How far the ball's centre keeps from the left and from the right side of a curve; the larger is 1.
+    pub sides: [f64; 2],
+    /// Places and the share there. Each belongs to the curve nearest to it, and counts where the curve is nearest.
+    pub keys: Vec<(DVec3, f64)>,
+    /// The share at the ends of open curves, half-way round from the only key of a closed one, and on curves without
+    /// keys.
+    pub rest: f64,
+}
+
+impl Default for Radii {
+    /// The same radius everywhere.
+    fn default() -> Self {
+        Self { sides: [1.0; 2], keys: Vec::new(), rest: 1.0 }
+    }
+}
+
+impl Radii {
+    /// Radii in model units as shares of the largest of them, which comes first: `left` and `right` of a curve away from
+    /// the places in `at`, there the larger of the two as given.
+    pub fn of([left, right]: [f64; 2], at: &[(DVec3, f64)]) -> (f64, Self) {
+        let rest = left.max(right);
+        let largest = at.iter().map(|k| k.1).fold(rest, f64::max);
+        let keys = at.iter().map(|&(p, r)| (p, r / largest)).collect();
+        (largest, Self { sides: [left / rest, right / rest], keys, rest: rest / largest })
+    }
+
+    /// Whether there is one ball for both sides.
+    pub fn is_even(&self) -> bool {
+        self.sides[0] == self.sides[1]
+    }
+
+    /// The smallest share anywhere.
+    pub fn least(&self) -> f64 {
+        self.keys.iter().map(|k| k.1).fold(self.rest, f64::min) * self.sides[0].min(self.sides[1])
+    }
+
+    /// The field of each curve.
+    pub(crate) fn fields(&self, mesh: &Connected<TriMesh>, curves: &[BlendCurve], radius: f64) -> Vec<RadiusField> {
+        let mut own: Vec<Vec<(DVec3, f64)>> = vec![vec![]; curves.len()];
+        for &(place, share) in &self.keys {
+            let distance = |c: &BlendCurve| distance_to(&chain(mesh, c), c.closed, place);
+            let nearest = curves.iter().map(distance).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+            if let Some((i, _)) = nearest {
+                own[i].push((place, share));
+            }
+        }
+        let plain = RadiusField { sides: self.sides, ..RadiusField::constant(radius) };
+        let field = |(curve, keys): (&BlendCurve, Vec<(DVec3, f64)>)| {
+            let law = if keys.is_empty() { None } else { Law::new(chain(mesh, curve), curve.closed, &keys, self.rest) };
+            match law {
+                Some(law) => RadiusField { law: Some(Arc::new(law)), ..plain.clone() },
+                None => RadiusField { base: radius * self.rest, ..plain.clone() },
+            }
+        };
+        curves.iter().zip(own).map(field).collect()
+    }
+}
+
+/// The points of a curve, the last of an open one included.
+fn chain(mesh: &Connected<TriMesh>, curve: &BlendCurve) -> Vec<DVec3> {
+    let mut points = curve.points(mesh);
+    points.extend(curve.halfedges.last().filter(|_| !curve.closed).map(|&h| mesh.position(mesh.head(h))));
+    points
+}
+
+fn distance_to(points: &[DVec3], closed: bool, place: DVec3) -> f64 {
+    let next = points.iter().skip(1).chain(points.first().filter(|_| closed));
+    let distance = |(&a, &b): (&DVec3, &DVec3)| {
+        let t = ((place - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+        place.distance(if t.is_nan() { a } else { a.lerp(b, t) })
+    };
+    points.iter().zip(next).map(distance).fold(f64::INFINITY, f64::min)
+}
