@@ -51,6 +51,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         "xtask",
         &[
             "fusion",
+            "lmc-tessellate",
             "mesh-core",
             "mesh-io",
             "mesh-query",

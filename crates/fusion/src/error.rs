@@ -99,9 +99,11 @@ impl Error {
             Self::Invalid(invalid) => invalid.at,
             Self::Compose(error) => error.place(),
             Self::NoCurve(_, at) => *at,
-            Self::Remesh(remesh::Error::NotFinite { place, .. } | remesh::Error::Singular { at: place }) => {
-                Some(*place)
-            }
+            Self::Remesh(
+                remesh::Error::NotFinite { place, .. }
+                | remesh::Error::Singular { at: place }
+                | remesh::Error::IllConditioned { at: place },
+            ) => Some(*place),
             Self::Region(_)
             | Self::Remesh(_)
             | Self::Blend(_)

@@ -25,12 +25,15 @@
 //! | `smooth/fair.rs` | harmonic, biharmonic and triharmonic fairing |
 //! | `smooth/held.rs` | what may move |
 //! | `smooth/laplace.rs`, `smooth/cholesky.rs` | the cotangent Laplacian and sparse systems made of it |
+//! | `hierarchy.rs` | decimation level by level, and details put back |
 //! | `error.rs` | why there is no result |
 
 mod error;
+mod hierarchy;
 mod isotropic;
 mod smooth;
 
 pub use error::Error;
+pub use hierarchy::Hierarchy;
 pub use isotropic::{Frozen, Params, Projection, Remeshed, Sizing, graded_sizes, remesh, remesh_observed};
 pub use smooth::{Fairing, Fairness, Flow, Taubin, curvature_flow, fair, taubin};

@@ -2,7 +2,7 @@
 
 use crate::Fault;
 use glam::{DAffine3, DQuat, DVec3};
-use mesh_core::{TriMesh, shapes};
+use mesh_core::{TriMesh, VertexId, shapes};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,6 +24,8 @@ pub enum Operation {
     Union,
     Difference,
     Intersection,
+    /// All openings joined by one smooth surface.
+    Compose,
 }
 
 /// A shape and where it stands: scaled, then turned, then moved.
@@ -51,13 +53,53 @@ pub struct Rotation {
 #[derive(Debug, Deserialize)]
 #[serde(tag = "shape", rename_all = "lowercase")]
 pub enum Shape {
-    Box { size: [f64; 3] },
-    Sphere { radius: f64, levels: u32 },
-    Cylinder { radius: f64, height: f64, segments: u32, rows: u32 },
-    Cone { radius: f64, height: f64, segments: u32, rows: u32 },
-    Tube { inner: f64, outer: f64, height: f64, segments: u32, rows: u32 },
-    Torus { major: f64, minor: f64, around: u32, across: u32 },
-    Capsule { radius: f64, height: f64, segments: u32, rings: u32, rows: u32 },
+    Box {
+        size: [f64; 3],
+    },
+    Sphere {
+        radius: f64,
+        levels: u32,
+    },
+    Cylinder {
+        radius: f64,
+        height: f64,
+        segments: u32,
+        rows: u32,
+    },
+    Cone {
+        radius: f64,
+        height: f64,
+        segments: u32,
+        rows: u32,
+    },
+    Tube {
+        inner: f64,
+        outer: f64,
+        height: f64,
+        segments: u32,
+        rows: u32,
+    },
+    Torus {
+        major: f64,
+        minor: f64,
+        around: u32,
+        across: u32,
+    },
+    Capsule {
+        radius: f64,
+        height: f64,
+        segments: u32,
+        rings: u32,
+        rows: u32,
+    },
+    /// A capsule without its upper half ball: one opening, facing +z.
+    Cup {
+        radius: f64,
+        height: f64,
+        segments: u32,
+        rings: u32,
+        rows: u32,
+    },
 }
 
 fn one() -> f64 {
@@ -89,8 +131,27 @@ impl Shape {
             Self::Capsule { radius, height, segments, rings, rows } => {
                 shapes::capsule(radius, height, segments, rings, rows)
             }
+            Self::Cup { radius, height, segments, rings, rows } => {
+                below(&shapes::capsule(radius, height, segments, rings, rows), 0.5 * height)
+            }
         }
     }
+}
+
+/// The faces of a mesh that reach no higher than `top`, up to rounding, and their vertices.
+fn below(mesh: &TriMesh, top: f64) -> TriMesh {
+    let low = |v: &VertexId| mesh.positions[v.index()].z <= top * (1.0 + 1e-9);
+    let mut ids = vec![None; mesh.positions.len()];
+    let mut part = TriMesh::default();
+    for face in mesh.faces.iter().filter(|f| f.iter().all(low)) {
+        part.faces.push(face.map(|v| {
+            *ids[v.index()].get_or_insert_with(|| {
+                part.positions.push(mesh.positions[v.index()]);
+                VertexId::from(part.positions.len() - 1)
+            })
+        }));
+    }
+    part
 }
 
 /// Every case of a folder, in order of name.

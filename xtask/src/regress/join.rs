@@ -1,7 +1,7 @@
 //! One job through the library, and what must hold of any result.
 
 use super::case::Operation;
-use fusion::blend;
+use fusion::{blend, compose};
 use glam::DVec3;
 use mesh_core::{TriMesh, Watch, validate};
 use mesh_io::{Format, Model};
@@ -25,7 +25,7 @@ pub struct Failure {
 
 impl Joined {
     /// What is wrong with the result of a job on `parts`.
-    pub fn faults(&self, parts: &[TriMesh], radius: Option<f64>) -> Vec<String> {
+    pub fn faults(&self, parts: &[TriMesh], operation: Operation, radius: Option<f64>) -> Vec<String> {
         let mut faults = vec![];
         let defects = validate(&self.mesh);
         if !defects.is_closed() {
@@ -36,8 +36,18 @@ impl Joined {
             Ok(pairs) => faults.push(format!("intersects itself: {} pairs, first {:?}", pairs.len(), pairs[0])),
             Err(error) => faults.push(format!("cannot be checked: {error}")),
         }
-        faults.extend(self.strangers(parts, radius.unwrap_or(0.0)));
+        faults.extend(match operation {
+            Operation::Compose => self.moved(parts),
+            _ => self.strangers(parts, radius.unwrap_or(0.0)),
+        });
         faults
+    }
+
+    /// A composition holds its parts in order, bit for bit, then its own.
+    fn moved(&self, parts: &[TriMesh]) -> Option<String> {
+        let wanted = parts.iter().flat_map(|m| &m.positions);
+        let moved = wanted.zip(&self.mesh.positions).position(|(p, q)| p != q);
+        moved.map(|v| format!("vertex {v} of the parts has been moved"))
     }
 
     /// A vertex that is no input vertex must lie near the seam, so near two parts at once: a point of a fillet is
@@ -72,17 +82,18 @@ fn run(
     operation: Operation,
     radius: Option<f64>,
 ) -> Result<(TriMesh, Vec<String>), (String, Option<DVec3>)> {
-    let params = fusion::join::Params {
-        operation: match operation {
-            Operation::Union => fusion::Operation::Union,
-            Operation::Difference => fusion::Operation::Difference,
-            Operation::Intersection => fusion::Operation::Intersection,
-        },
-        blend: radius.map(blend::Params::new),
-        format: Format::Ply,
-    };
     let models: Vec<_> = parts.iter().cloned().map(Model::from).collect();
-    fusion::join(&models, &params, &Watch::default())
-        .map(|outcome| (outcome.model.mesh, outcome.report.warnings))
-        .map_err(|e| (e.to_string(), e.place()))
+    let watch = Watch::default();
+    let booleans = |operation: fusion::Operation| {
+        let params = fusion::join::Params { operation, blend: radius.map(blend::Params::new), format: Format::Ply };
+        fusion::join(&models, &params, &watch)
+    };
+    match operation {
+        Operation::Union => booleans(fusion::Operation::Union),
+        Operation::Difference => booleans(fusion::Operation::Difference),
+        Operation::Intersection => booleans(fusion::Operation::Intersection),
+        Operation::Compose => compose::compose(&models, &compose::Params::new(Format::Ply), &watch),
+    }
+    .map(|outcome| (outcome.model.mesh, [outcome.report.warnings, outcome.report.notes].concat()))
+    .map_err(|e| (e.to_string(), e.place()))
 }

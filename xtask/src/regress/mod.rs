@@ -5,6 +5,8 @@
 //! | `case.rs` | cases as files |
 //! | `golden.rs` | approved records |
 //! | `cluster.rs` | polyhedra rounded by clusters |
+//! | `compositions.rs` | random compositions of open pieces |
+//! | `lewiner.rs` | marching cubes on random fields |
 //! | `join.rs` | one job through the library |
 //! | `pairs.rs`, `pose.rs` | pairs of real models in random poses |
 //! | `nasty.rs` | broken files through the command line |
@@ -12,8 +14,10 @@
 
 mod case;
 pub mod cluster;
+mod compositions;
 mod golden;
 mod join;
+mod lewiner;
 mod nasty;
 mod pairs;
 mod pose;
@@ -31,13 +35,13 @@ pub struct Options {
     /// Approve what the cases give now
     #[arg(long)]
     bless: bool,
-    /// Also run the pairs of fixtures/pairs.toml and the broken files found in this folder
+    /// Also run the pairs of fixtures/pairs.toml, random compositions and the broken files found in this folder
     #[arg(long, value_name = "DIR")]
     models: Option<PathBuf>,
-    /// Only a few of the pairs, at one radius, and no table
+    /// Only a few of the pairs and compositions, at one radius, and no tables
     #[arg(long, requires = "models")]
     quick: bool,
-    /// Have every result checked by libigl through Python
+    /// Have every result checked by libigl through Python, and marching cubes by scikit-image
     #[arg(long)]
     reference: bool,
 }
@@ -47,8 +51,12 @@ pub fn run(options: &Options) -> Result<(), Fault> {
     let mut reference = if options.reference { Some(Reference::new()?) } else { None };
     let mut faults = cluster::run(options.bless, &mut reference)?;
     faults += cases(options.bless, &mut reference)?;
+    if options.reference {
+        faults += lewiner::run()?;
+    }
     if let Some(models) = &options.models {
         faults += nasty::run(&models.join("nasty"))?;
+        faults += compositions::run(models, options.quick, &mut reference)?;
         faults += pairs::run(models, options.quick, &mut reference)?;
     }
     if faults == 0 { Ok(()) } else { Err(format!("regress found {faults} faults").into()) }
@@ -71,7 +79,7 @@ fn cases(bless: bool, reference: &mut Option<Reference>) -> Result<usize, Fault>
         match join::join(&parts, case.operation, case.radius) {
             Err(failure) => wrong.push(failure.reason),
             Ok(joined) => {
-                wrong.extend(joined.faults(&parts, case.radius));
+                wrong.extend(joined.faults(&parts, case.operation, case.radius));
                 let now = Golden::of(&joined.mesh)?;
                 match Golden::read(&record)? {
                     _ if bless => now.bless(&record)?,

@@ -85,7 +85,7 @@ fn one(
             if let Some(reference) = reference {
                 reference.add(&key(&name, share), &joined.mesh)?;
             }
-            joined.faults(parts, Some(radius))
+            joined.faults(parts, Operation::Union, Some(radius))
         }
         Err(failure) if failure.place.is_none() => vec![format!("fails without a place: {}", failure.reason)],
         Err(_) => vec![],

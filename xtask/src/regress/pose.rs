@@ -20,7 +20,7 @@ pub fn overlapping(mut a: TriMesh, mut b: TriMesh, seed: u64) -> [TriMesh; 2] {
 }
 
 /// The SplitMix64 generator: seeds need no warming up.
-struct SplitMix(u64);
+pub struct SplitMix(pub u64);
 
 impl SplitMix {
     fn next(&mut self) -> u64 {
@@ -31,12 +31,12 @@ impl SplitMix {
     }
 
     /// In [0, 1).
-    fn unit(&mut self) -> f64 {
+    pub fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// A uniformly random rotation: a random direction in four dimensions, by rejection from the cube.
-    fn rotation(&mut self) -> DQuat {
+    pub fn rotation(&mut self) -> DQuat {
         loop {
             let q = DQuat::from_array([(); 4].map(|()| 2.0 * self.unit() - 1.0));
             if (1e-3..=1.0).contains(&q.length_squared()) {

@@ -66,6 +66,8 @@ pub enum Error {
         index: usize,
         /// Around where.
         at: DVec3,
+        /// The loops, as (part, loop), that hang together with the first.
+        joined: Vec<(usize, usize)>,
     },
     /// The surface crosses a part or itself.
     #[error(

@@ -5,11 +5,13 @@
 //! | `openings.rs` | the loops to be joined, and whether the parts are posed so that they can be |
 //! | `constraints.rs` | what the field must satisfy |
 //! | `surface.rs` | the field's zero set between the openings, tessellated and remeshed |
+//! | `lead.rs` | guides through necks that would break |
 //! | `weld.rs` | parts and surface as one mesh, and whether it hangs together |
 //! | `error.rs` | what can go wrong, where, and what would help |
 
 mod constraints;
 mod error;
+mod lead;
 mod openings;
 mod surface;
 mod weld;
@@ -20,6 +22,7 @@ use crate::outcome::{Outcome, Promise, finish_as};
 use crate::{Counts, Report};
 use constraints::{constraints, fitting};
 use glam::DVec3;
+use lead::lead;
 use mesh_core::{Connected, TriMesh, Watch};
 use mesh_io::{Format, Model};
 use openings::{Opening, check_pose, mean_edge, openings};
@@ -122,14 +125,48 @@ pub fn compose(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcom
     let meshes = report.time("connect", || connect(parts))?;
     let openings = openings(&meshes, params.loops.as_deref())?;
     report.time("pose", || check_pose(&meshes, &openings))?;
-    let field = report.time("fit", || fit(&meshes, &openings, params, watch))?;
     report.figures.insert("loops".into(), openings.len() as f64);
+    let mut led = params.clone();
+    let mut first_error = None;
+    for _ in 0..openings.len() {
+        let error = match fitted(parts, &meshes, &openings, &led, report.clone(), watch) {
+            Err(crate::Error::Compose(error @ Error::Apart { .. })) => error,
+            // Where leading it makes things worse, what was wrong at first says more.
+            Err(error) if !error.is_cancelled() => return Err(first_error.map_or(error, crate::Error::Compose)),
+            result => return result,
+        };
+        let guides = if let Error::Apart { joined, .. } = &error { lead(&openings, joined) } else { vec![] };
+        if guides.is_empty() {
+            return Err(first_error.unwrap_or(error).into());
+        }
+        if let Error::Apart { part, index, at, .. } = &error {
+            report.notes.push(format!(
+                "the neck to loop {index} of part {part}, around {at}, broke by itself and is led by {} guides",
+                guides.len()
+            ));
+        }
+        led.guides.extend(guides);
+        first_error.get_or_insert(error);
+    }
+    Err(first_error.unwrap_or(Error::Closed).into())
+}
+
+/// Fits the field and tries the surface with finer and finer cells.
+fn fitted(
+    parts: &[Model],
+    meshes: &[Connected<TriMesh>],
+    openings: &[Opening],
+    params: &Params,
+    mut report: Report,
+    watch: &Watch,
+) -> Result<Outcome, crate::Error> {
+    let field = report.time("fit", || fit(meshes, openings, params, watch))?;
     report.figures.insert("constraints".into(), field.centres() as f64);
     report.residuals.insert("field".into(), field.residual());
     let mut attempts = FINENESS.into_iter().peekable();
     loop {
         let fineness = attempts.next().unwrap_or(1.0);
-        match attempt(parts, &meshes, &openings, &field, params, fineness, report.clone(), watch) {
+        match attempt(parts, meshes, openings, &field, params, fineness, report.clone(), watch) {
             Err(e) if attempts.peek().is_some() && is_local(&e) => report.figures.insert("retries".into(), 1.0),
             result => return result,
         };

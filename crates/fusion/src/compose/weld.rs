@@ -101,7 +101,8 @@ pub(super) fn check_pieces(
     }
     if let Some(o) = (0..openings.len()).find(|&i| !reached[i]).map(|i| &openings[i]) {
         let at = o.rim.points.iter().sum::<glam::DVec3>() / o.rim.points.len() as f64;
-        return Err(Error::Apart { pieces: pieces.len(), part: o.part, index: o.index, at });
+        let joined = openings.iter().zip(&reached).filter(|o| *o.1).map(|(o, _)| (o.part, o.index)).collect();
+        return Err(Error::Apart { pieces: pieces.len(), part: o.part, index: o.index, at, joined });
     }
     for i in (0..openings.len()).filter(|&i| openings.len() > 1 && alone(i)) {
         let (part, index) = (openings[i].part, openings[i].index);

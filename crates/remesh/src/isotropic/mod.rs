@@ -21,8 +21,9 @@ pub use params::{Frozen, Params, Projection, Remeshed, Sizing};
 use rayon::prelude::*;
 use relax::{Rings, undo_folds, weights};
 use seat::{Ground, Seat};
+pub(crate) use state::keeps_side;
 use state::{Kind, State};
-use table::{LOCKED, NONE, Table};
+pub(crate) use table::{LOCKED, NONE, Table};
 
 /// The stage's name in origins and progress.
 const STAGE: &str = "remesh";
