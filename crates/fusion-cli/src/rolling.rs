@@ -60,6 +60,7 @@ impl Rolling {
             surface: match self.surface {
                 Surface::Stitch => blend::Surface::Stitch,
                 Surface::Keep => blend::Surface::Keep(blend::keep::Params::default()),
+                Surface::Field => blend::Surface::Field,
             },
             ..blend::Params::new(radius)
         })
@@ -118,6 +119,8 @@ pub enum Surface {
     Stitch,
     /// The mesh's own vertices moved onto the sweep.
     Keep,
+    /// A field of balls.
+    Field,
 }
 
 fn section(text: &str) -> Result<Section, String> {
@@ -154,7 +157,8 @@ fn surface(text: &str) -> Result<Surface, String> {
     match text {
         "stitch" => Ok(Surface::Stitch),
         "keep" => Ok(Surface::Keep),
-        _ => Err("a surface is stitch or keep".into()),
+        "field" => Ok(Surface::Field),
+        _ => Err("a surface is stitch, field or keep".into()),
     }
 }
 

@@ -85,7 +85,7 @@ fn overlay(
 ) -> Result<Boolean, Error> {
     // Sheets that touch without crossing would be self-intersections of the file.
     let mut how = tri_intersect::Params { contact: Contact::Refuse, ..tri_intersect::Params::default() };
-    if params.blend.as_ref().is_some_and(|b| b.surface == blend::Surface::Stitch) {
+    if params.blend.as_ref().is_some_and(|b| !matches!(b.surface, blend::Surface::Keep(_))) {
         // The blend removes the seam with all its slivers.
         how.slivers = Slivers::Keep;
     }

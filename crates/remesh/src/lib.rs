@@ -17,6 +17,7 @@
 //! |---|---|
 //! | `isotropic/mod.rs`, `isotropic/params.rs` | the rounds of a remeshing, and what is wanted of it |
 //! | `isotropic/grade.rs` | wanted edge lengths between boundaries of different fineness |
+//! | `isotropic/refine.rs` | long edges split, and nothing else |
 //! | `isotropic/table.rs`, `isotropic/state.rs` | the editable surface; split, collapse and flip |
 //! | `isotropic/features.rs`, `isotropic/lines.rs` | feature polylines, and vertices that slide along them |
 //! | `isotropic/relax.rs` | tangential relaxation; taking back what folds |
@@ -35,5 +36,5 @@ mod smooth;
 
 pub use error::Error;
 pub use hierarchy::Hierarchy;
-pub use isotropic::{Frozen, Params, Projection, Remeshed, Sizing, graded_sizes, remesh, remesh_observed};
+pub use isotropic::{Frozen, Params, Projection, Remeshed, Sizing, graded_sizes, refine, remesh, remesh_observed};
 pub use smooth::{Fairing, Fairness, Flow, Taubin, curvature_flow, fair, taubin};

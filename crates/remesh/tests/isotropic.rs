@@ -241,3 +241,25 @@ proptest! {
         prop_assert!(fine.mesh.positions.iter().zip(fine.origins.vertices.as_slice()).all(same));
     }
 }
+
+#[test]
+fn refining_splits_and_does_nothing_else() {
+    let cube = shapes::cuboid(DVec3::ONE);
+    let mesh = Connected::new(&cube).unwrap();
+    let wanted = |p: DVec3| if p.z > 0.4 { 0.1 } else { 1.0 };
+    let (fine, origins) = remesh::refine(&mesh, &wanted, 0.1).unwrap();
+    let out = Connected::new(&fine).unwrap();
+    assert!(fine.positions.starts_with(&cube.positions));
+    assert!((volume(&fine) - 1.0).abs() < 1e-12 && (area(&fine) - 6.0).abs() < 1e-12);
+    for (p, origin) in fine.positions.iter().zip(origins.vertices.as_slice()) {
+        assert!(p.distance(origin.position(std::slice::from_ref(&cube)).unwrap()) < 1e-15);
+    }
+    for f in out.face_ids() {
+        let corners = fine.triangle(f);
+        let longest = (0..3).map(|k| corners[k].distance(corners[(k + 1) % 3])).fold(0.0, f64::max);
+        assert!(longest <= 0.1 || corners.iter().any(|p| p.z < 0.4), "{corners:?}");
+        let (FaceOrigin::Input { face, .. } | FaceOrigin::Piece { face, .. }) = origins.faces[f] else { panic!() };
+        let normal = mesh_core::face_normal(&cube, face);
+        assert!(corners.iter().all(|p| (*p - cube.triangle(face)[0]).dot(normal).abs() < 1e-15));
+    }
+}

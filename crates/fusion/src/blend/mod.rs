@@ -15,11 +15,13 @@
 //! | `fill.rs` | corner patches: their rims, and what they are tangent to |
 //! | `plate.rs` | a disc of triangles bent onto a ball or into a thin plate |
 //! | `sew.rs` | removal of what lies between, sewing |
+//! | `field/` | the blend as a field: no spine, cannot fold |
 //! | `keep/` | the other surface: vertices slid onto the sweep, connectivity kept |
 //! | `trouble.rs` | what a stage refuses, and where |
 
 mod corner;
 mod ending;
+mod field;
 mod fill;
 pub mod keep;
 mod limit;
@@ -87,6 +89,8 @@ pub enum Surface {
     Stitch,
     /// The mesh's own vertices are moved onto it; connectivity is kept.
     Keep(keep::Params),
+    /// As a field of balls around both sides, which cannot fold; an arc in profile.
+    Field,
 }
 
 /// What to do where a ball of the full radius does not fit, or its sweep would fold.
@@ -196,6 +200,9 @@ pub fn blend(
 ) -> Result<Blended, Error> {
     if let Surface::Keep(how) = &params.surface {
         return keep::blend(mesh, curves, params, how, watch);
+    }
+    if params.surface == Surface::Field {
+        return field::blend(mesh, curves, params, watch);
     }
     let refusal = match attempt(mesh, curves, params, ROUNDS, watch) {
         Ok(blended) => return Ok(blended),

@@ -4,6 +4,7 @@ mod features;
 mod grade;
 mod lines;
 mod params;
+mod refine;
 mod relax;
 mod seat;
 mod state;
@@ -19,6 +20,7 @@ use mesh_core::{
 };
 pub use params::{Frozen, Params, Projection, Remeshed, Sizing};
 use rayon::prelude::*;
+pub use refine::refine;
 use relax::{Rings, undo_folds, weights};
 use seat::{Ground, Seat};
 pub(crate) use state::keeps_side;

@@ -1,0 +1,195 @@
+//! Blends that cannot fold: the ball as a field around two sides, instead of a sweep along a curve.
+//!
+//! Linkages are level sets of distance on the mesh, so they cannot cross themselves, and neighbouring seams, short seams
+//! and crevices need no special case. The surface between them is the cut-out piece of the mesh itself, which has the
+//! right topology already: it is drawn onto the balls that touch both sides, and settles as a thin plate where they
+//! disagree with their neighbours.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mod.rs` | the stages, and the smaller ball where the result meets itself |
+//! | `sides.rs` | the two sides: distances and smoothed normals |
+//! | `ball.rs` | the ball that touches both sides |
+//! | `mark.rs` | what the ball sweeps over |
+//! | `level.rs` | the loops around it |
+//! | `piece.rs` | what lies between them, cut out and put back |
+//! | `surface.rs` | that piece drawn onto the balls |
+//! | `plate.rs` | the thin plate |
+
+mod ball;
+mod level;
+mod mark;
+mod piece;
+mod plate;
+mod sides;
+mod surface;
+
+use super::linkage::Opened;
+use super::sew::sew;
+use super::trouble::Trouble;
+use super::{Blended, Error, Overlap, Params, check, step_length};
+use glam::DVec3;
+use level::level_curves;
+use mark::scalar;
+use mesh_core::{Adjacency, Connected, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, Watch};
+use piece::{cut_out, kept_chords, put_back};
+use sides::{Sides, between};
+use spine::{BlendCurve, Convexity, Dip, RadiusField};
+use surface::draw;
+use tri_intersect::embed::{curve_edges, flood};
+use tri_intersect::{EmbedError, EmbedParams, Embedded, embed};
+
+/// How often the ball is made smaller where the result meets itself.
+const ROUNDS: usize = 6;
+
+/// Blends `curves`, all of one convexity, as a field.
+///
+/// # Errors
+/// [`Error`]; what does not fit comes with a place.
+pub(crate) fn blend(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &Params,
+    watch: &Watch,
+) -> Result<Blended, Error> {
+    let Some(first) = curves.first() else { return Err(Error::NoCurves) };
+    let convexity = first.convexity(mesh).unwrap_or(Convexity::Concave);
+    let sides = Sides::new(mesh, curves, convexity).map_err(|t| t.into_error(params.radius))?;
+    let edge = step_length(mesh, curves, params);
+    let mut radius = RadiusField::constant(params.radius);
+    let mut spots: Vec<(DVec3, u32)> = vec![];
+    for round in 0.. {
+        watch.step("blend", round as f64 / ROUNDS as f64)?;
+        let trouble = match attempt(&sides, &radius, edge, params, watch) {
+            Ok(mut blended) => {
+                blended.shrunk = radius.dips.iter().map(|d| (d.at, radius.at(d.at).0)).collect();
+                return Ok(blended);
+            }
+            Err(trouble) => trouble,
+        };
+        if std::env::var_os("FIELD_DEBUG").is_some() {
+            if let Trouble::Places { what, places } = &trouble {
+                eprintln!("field round {round}: {what} {} {:?}", places.len(), &places[..places.len().min(3)]);
+            }
+        }
+        let places = match &trouble {
+            Trouble::Places { places, .. } if round < ROUNDS && params.overlap == Overlap::Shrink => places,
+            _ => return Err(trouble.into_error(params.radius)),
+        };
+        if places.is_empty() {
+            return Err(trouble.into_error(params.radius));
+        }
+        shrink(&mut radius, &mut spots, places);
+    }
+    Err(Error::NoCurves)
+}
+
+/// Makes the ball smaller around the places.
+fn shrink(radius: &mut RadiusField, spots: &mut Vec<(DVec3, u32)>, places: &[DVec3]) {
+    let mut fresh: Vec<usize> = vec![];
+    for &place in places {
+        let near = spots.iter().position(|s| s.0.distance(place) < 1.5 * radius.base);
+        let spot = near.unwrap_or_else(|| {
+            spots.push((place, 0));
+            spots.len() - 1
+        });
+        if !fresh.contains(&spot) {
+            fresh.push(spot);
+            spots[spot].1 += 1;
+        }
+    }
+    let base = radius.base;
+    let dip = |&(at, count): &(DVec3, u32)| Dip {
+        at,
+        factor: 0.65f64.powi(count as i32),
+        extent: base * (3.0 + 0.5 * f64::from(count)),
+    };
+    radius.dips = spots.iter().map(dip).collect();
+}
+
+fn attempt(
+    sides: &Sides<'_>,
+    radius: &RadiusField,
+    edge: f64,
+    params: &Params,
+    watch: &Watch,
+) -> Result<Blended, Trouble> {
+    let mesh = sides.mesh;
+    let (fine, origins, of) = refined(sides, radius.base)?;
+    let fine = Connected::new(fine)
+        .map_err(|e| Trouble::at("the mesh is not a manifold", e.place.into_iter().collect()))?;
+    let seam = between(&fine, &of);
+    let value = scalar(&fine, &of, &seam, sides, radius);
+    let loops = level_curves(mesh, &fine, &origins, &value);
+    if loops.is_empty() {
+        let at = seam.first().map(|&v| fine.position(v));
+        return Err(Trouble::at("the ball touches all of the surface", at.into_iter().collect()));
+    }
+    let how = EmbedParams { snap: 0.1, reach: params.snap * radius.base };
+    let embedded = embed(mesh, &loops, &how, watch).map_err(refusal)?;
+    let cut = Connected::new(&embedded.mesh)
+        .map_err(|e| Trouble::at("the cut mesh is not a manifold", e.place.into_iter().collect()))?;
+    let removed = enclosed(sides, &cut, &embedded)?;
+    let piece = cut_out(&embedded.mesh, &removed, &embedded.curves);
+    let taken = kept_chords(&cut, &removed, &piece.rim);
+    let made = draw(&piece, sides, radius, edge, &taken, watch)?;
+    let back = put_back(&piece.rim, &made, embedded.mesh.vertex_count() as u32);
+    let opened = Opened { linkages: vec![], joints: vec![], stops: vec![], loops: vec![], embedded };
+    let sewn = sew(&opened, &removed, &[back]);
+    check(&sewn, watch)?;
+    Ok(Blended {
+        mesh: sewn.mesh,
+        origins: sewn.origins,
+        first_blend_face: sewn.first_new_face,
+        strips: 0,
+        corners: 0,
+        residual: 0.0,
+        shrunk: vec![],
+        full_share: 1.0,
+    })
+}
+
+/// The mesh with edges near the seam short enough for the ball to be seen on them, its origins, and its faces' sides.
+fn refined(sides: &Sides<'_>, r: f64) -> Result<(TriMesh, Origins, FaceMap<u8>), Trouble> {
+    // On one side, near the seam means near the other. Long edges may lead there from afar.
+    let wanted = |p: DVec3| sides.distance(0, p).max(sides.distance(1, p)) - 2.0 * r;
+    let failed = |_| Trouble::at("the surface near the seam cannot be refined", vec![]);
+    let (fine, origins) = remesh::refine(sides.mesh, &wanted, 0.3 * r).map_err(failed)?;
+    let side = |o: &FaceOrigin| match *o {
+        FaceOrigin::Input { face, .. } | FaceOrigin::Piece { face, .. } => sides.of[face],
+        FaceOrigin::New { .. } => 2,
+    };
+    let of = origins.faces.as_slice().iter().map(side).collect::<Vec<_>>().into();
+    Ok((fine, origins, of))
+}
+
+fn refusal(error: EmbedError) -> Trouble {
+    match error {
+        EmbedError::Crossings(found) => Trouble::at("linkages cross", found.iter().map(|c| c.place).collect()),
+        EmbedError::Apart { place, .. } | EmbedError::TooSmall { place, .. } => {
+            Trouble::at("a linkage cannot be cut into the mesh", vec![place])
+        }
+        EmbedError::Cancelled(c) => Trouble::Cancelled(c),
+        other => Trouble::Embed(other),
+    }
+}
+
+/// The faces between the linkages; each linkage must have them on one side and others on the other.
+fn enclosed(sides: &Sides<'_>, cut: &Connected<&TriMesh>, embedded: &Embedded) -> Result<FaceMap<bool>, Trouble> {
+    // The seam is at vertices of the input, whose faces keep their side when they are cut.
+    let side = |o: &FaceOrigin| match *o {
+        FaceOrigin::Input { face, .. } | FaceOrigin::Piece { face, .. } => sides.of[face],
+        FaceOrigin::New { .. } => 2,
+    };
+    let of: FaceMap<u8> = embedded.origins.faces.as_slice().iter().map(side).collect::<Vec<_>>().into();
+    let seeds: Vec<FaceId> = between(cut, &of).into_iter().flat_map(|v| cut.ring(v)).map(HalfedgeId::face).collect();
+    let walls = embedded.curves.iter().flat_map(|c| curve_edges(c, true));
+    let removed = flood(cut, walls, &seeds);
+    for [a, b] in embedded.curves.iter().flat_map(|c| curve_edges(c, true)) {
+        let faces = cut.ring(a).find(|&h| cut.head(h) == b).map(|h| [Some(h), cut.twin(h)].map(|h| h.map(|h| removed[h.face()])));
+        if !matches!(faces, Some([Some(x), Some(y)]) if x != y) {
+            return Err(Trouble::at("the linkages do not enclose the blend curve", vec![cut.position(a)]));
+        }
+    }
+    Ok(removed)
+}
