@@ -27,6 +27,7 @@ pub fn refine<M: Faces + Positions + Sync>(
         origins: mesh.vertex_ids().map(|v| VertexOrigin::Input { part: 0, vertex: v }).collect(),
         parents: mesh.face_ids().map(|f| f.0).collect(),
         urged: vec![false; mesh.face_count()],
+        settled: vec![false; 3 * mesh.face_count()],
     };
     while work.sweep(mesh, wanted, least) {}
     let pieces = work.pieces(mesh.face_count());
@@ -45,6 +46,8 @@ struct Refined {
     parents: Vec<u32>,
     /// Faces whose longest edge stands in the way of a split.
     urged: Vec<bool>,
+    /// Halfedges known to be short enough.
+    settled: Vec<bool>,
 }
 
 impl Refined {
@@ -58,7 +61,7 @@ impl Refined {
             if t != NONE && h < t && self.table.flags[h as usize] & LOCKED == 0 {
                 let stands = [h, t].map(|h| self.is_longest(h));
                 let urged = [h, t].into_iter().zip(stands).any(|(h, s)| s && self.urged[h as usize / 3]);
-                if urged || self.is_too_long(h, wanted, least) {
+                if urged || !self.settled[h as usize] && self.is_too_long(h, wanted, least) {
                     if stands == [true, true] {
                         self.split(mesh, h);
                         done = true;
@@ -68,6 +71,8 @@ impl Refined {
                             done |= !is_longest && !std::mem::replace(face, true);
                         }
                     }
+                } else {
+                    self.settled[h as usize] = true;
                 }
             }
             h += 1;
@@ -116,6 +121,9 @@ impl Refined {
             self.parents.push(self.parents[side as usize / 3]);
             self.urged[side as usize / 3] = false;
             self.urged.push(false);
+            self.settled.extend([false; 3]);
+            let changed = 3 * (side / 3) as usize;
+            self.settled[changed..changed + 3].fill(false);
         }
     }
 

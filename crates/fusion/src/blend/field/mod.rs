@@ -67,11 +67,6 @@ pub(crate) fn blend(
             }
             Err(trouble) => trouble,
         };
-        if std::env::var_os("FIELD_DEBUG").is_some() {
-            if let Trouble::Places { what, places } = &trouble {
-                eprintln!("field round {round}: {what} {} {:?}", places.len(), &places[..places.len().min(3)]);
-            }
-        }
         let places = match &trouble {
             Trouble::Places { places, .. } if round < ROUNDS && params.overlap == Overlap::Shrink => places,
             _ => return Err(trouble.into_error(params.radius)),

@@ -90,7 +90,7 @@ impl Plate {
     }
 
     /// Moves the free points to where the energy is least, from where they are. `pull` is q/σ⁴ for each point.
-    pub fn settle(&self, x: &mut [DVec3], targets: &[DVec3], pull: &[f64]) {
+    pub fn settle(&self, x: &mut [DVec3], targets: &[DVec3], pull: &[f64], accuracy: f64) {
         let n = x.len();
         let hold: Vec<f64> = (0..n).map(|v| pull[v] * self.areas[v]).collect();
         let apply = |x: &[DVec3]| {
@@ -110,7 +110,7 @@ impl Plate {
         let mut scaled = scale(&residual);
         let mut direction = scaled.clone();
         let mut size = dot(&residual, &scaled);
-        let enough = 1e-12 * size;
+        let enough = accuracy * accuracy * size;
         for _ in 0..MOST_STEPS {
             if !(size > enough) {
                 break;

@@ -17,7 +17,7 @@ const SIGMA: f64 = 0.2;
 /// Distance from the plate, in radii, at which a ball begins to count as a stray.
 const STRAY: f64 = 0.03;
 /// How often the weights of the balls are revised.
-const REVISIONS: usize = 4;
+const REVISIONS: usize = 3;
 /// How often the piece is remeshed and drawn.
 const PASSES: usize = 3;
 /// Change of edge length with distance from the linkages.
@@ -38,12 +38,12 @@ pub(crate) fn draw(
 ) -> Result<TriMesh, Trouble> {
     let at = || piece.mesh.positions.first().copied().into_iter().collect::<Vec<_>>();
     let mut mesh = piece.mesh.clone();
-    for _ in 0..PASSES {
+    for pass in 1..=PASSES {
         mesh = even_out(mesh, edge, watch)?;
         split_chords(&mut mesh, piece.rim.len(), taken, 0.5 * edge);
         let connected =
             Connected::new(&mesh).map_err(|e| Trouble::at("the linkages touch", e.place.into_iter().collect()))?;
-        let points = settle(&connected, sides, radius, edge);
+        let points = settle(&connected, sides, radius, edge, pass == PASSES);
         if points.iter().any(|p| !p.is_finite()) {
             return Err(Trouble::at("the blend does not settle", at()));
         }
@@ -69,7 +69,7 @@ fn even_out(mesh: TriMesh, edge: f64, watch: &Watch) -> Result<TriMesh, Trouble>
 }
 
 /// One thin plate: drawn to the balls, strays left out, tangent to the kept surface at the linkages.
-fn settle(mesh: &Connected<&TriMesh>, sides: &Sides<'_>, radius: &RadiusField, edge: f64) -> Vec<DVec3> {
+fn settle(mesh: &Connected<&TriMesh>, sides: &Sides<'_>, radius: &RadiusField, edge: f64, last: bool) -> Vec<DVec3> {
     let n = mesh.vertex_count();
     let found: Vec<Option<DVec3>> =
         mesh.mesh().positions.par_iter().with_min_len(16).map(|&p| target(sides, radius, p)).collect();
@@ -100,9 +100,10 @@ fn settle(mesh: &Connected<&TriMesh>, sides: &Sides<'_>, radius: &RadiusField, e
             x[v] = targets[v];
         }
     }
-    for revision in 0..=REVISIONS {
-        plate.settle(&mut x, &targets, &pull);
-        if revision == REVISIONS {
+    let revisions = if last { REVISIONS } else { 1 };
+    for revision in 0..=revisions {
+        plate.settle(&mut x, &targets, &pull, if last && revision == REVISIONS { 1e-4 } else { 1e-2 });
+        if revision == revisions {
             break;
         }
         for v in 0..n {
