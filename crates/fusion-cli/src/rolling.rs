@@ -26,9 +26,10 @@ pub struct Rolling {
     /// What finds the way of the ball's centre
     #[arg(long, value_enum, default_value_t = Spine::Contact, requires = "radius")]
     pub spine: Spine,
-    /// How the surface is put in: `stitch` cuts along the ball's contact curves and sews in the sweep; `keep` moves the
-    /// mesh's own vertices onto it, all faces kept
-    #[arg(long, value_name = "SURFACE", default_value = "stitch", value_parser = surface, requires = "radius")]
+    /// How the surface is put in: `stitch` cuts along the ball's contact curves and sews in the sweep; `field` cuts along
+    /// level sets and draws what is between onto the balls, which cannot fold; `auto` stitches, and takes the field where
+    /// that fails; `keep` moves the mesh's own vertices onto the sweep, all faces kept
+    #[arg(long, value_name = "SURFACE", default_value = "auto", value_parser = surface, requires = "radius")]
     pub surface: Surface,
     /// Least reach of the two sides the ball rolls on, in radii; grows by itself where more is needed
     #[arg(long, value_name = "RADII", default_value = "1.75", value_parser = alpha, requires = "radius")]
@@ -58,6 +59,7 @@ impl Rolling {
             alpha: self.alpha,
             tolerance: self.tolerance,
             surface: match self.surface {
+                Surface::Auto => blend::Surface::Auto,
                 Surface::Stitch => blend::Surface::Stitch,
                 Surface::Keep => blend::Surface::Keep(blend::keep::Params::default()),
                 Surface::Field => blend::Surface::Field,
@@ -115,6 +117,8 @@ pub enum Spine {
 /// How the surface is put in.
 #[derive(Clone, Copy)]
 pub enum Surface {
+    /// Swept, or a field where that fails.
+    Auto,
     /// Swept, and sewn between exact cuts.
     Stitch,
     /// The mesh's own vertices moved onto the sweep.
@@ -155,10 +159,11 @@ fn profile(text: &str) -> Result<Curve, String> {
 
 fn surface(text: &str) -> Result<Surface, String> {
     match text {
+        "auto" => Ok(Surface::Auto),
         "stitch" => Ok(Surface::Stitch),
         "keep" => Ok(Surface::Keep),
         "field" => Ok(Surface::Field),
-        _ => Err("a surface is stitch, field or keep".into()),
+        _ => Err("a surface is auto, stitch, field or keep".into()),
     }
 }
 

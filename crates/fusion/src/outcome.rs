@@ -83,6 +83,7 @@ pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Re
     *worst = worst.max(blended.residual);
     report.figures.insert("radius".into(), params.radius);
     *report.figures.entry("strips".into()).or_default() += blended.strips as f64;
+    *report.figures.entry("fields".into()).or_default() += blended.fields as f64;
     *report.figures.entry("corners".into()).or_default() += blended.corners as f64;
     let smallest = blended.shrunk.iter().map(|s| s.1).fold(params.radius, f64::min);
     for (name, value) in [("full_share", blended.full_share), ("smallest_radius", smallest)] {
@@ -90,6 +91,9 @@ pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Re
         *figure = figure.min(value);
     }
     *report.figures.entry("shrunk_places".into()).or_default() += blended.shrunk.len() as f64;
+    for (at, what) in &blended.fallbacks {
+        report.warnings.push(format!("the blend near {at} is made as a field: {what}"));
+    }
     for (at, radius) in &blended.shrunk {
         report.warnings.push(format!(
             "a ball of radius {} does not fit near {at}: one of radius {radius} is used there, fading into the full one",
@@ -112,9 +116,11 @@ mod tests {
             origins: Origins::default(),
             first_blend_face: FaceId(0),
             strips: 1,
+            fields: 1,
             corners: 0,
             residual: 1e-12,
             shrunk: shrunk.to_vec(),
+            fallbacks: vec![],
             full_share,
         };
         let (params, mut report) = (blend::Params::new(0.5), Report::default());

@@ -3,6 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `mod.rs` | the stages, and the loop that makes the ball smaller where it does not fit |
+//! | `auto.rs` | which curves are swept and which are blended as a field |
 //! | `limit.rs` | the largest radius that fits |
 //! | `radii.rs` | how the radius varies along a curve and between its sides |
 //! | `mends.rs` | what has been done so far to make the blend fit |
@@ -19,6 +20,7 @@
 //! | `keep/` | the other surface: vertices slid onto the sweep, connectivity kept |
 //! | `trouble.rs` | what a stage refuses, and where |
 
+mod auto;
 mod corner;
 mod ending;
 mod field;
@@ -84,8 +86,10 @@ pub struct Params {
 /// How the surface is put in.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Surface {
-    /// Swept, and sewn between exact cuts along the linkages.
+    /// Swept as [`Surface::Stitch`]; where that fails, as [`Surface::Field`].
     #[default]
+    Auto,
+    /// Swept, and sewn between exact cuts along the linkages.
     Stitch,
     /// The mesh's own vertices are moved onto it; connectivity is kept.
     Keep(keep::Params),
@@ -124,7 +128,7 @@ impl Params {
 /// A blended mesh and what is to be said of it.
 #[derive(Clone, Debug)]
 pub struct Blended {
-    /// The result; the blend's faces are the last ones.
+    /// The result; the blend's faces are the last ones, unless some curves were swept and others blended as a field.
     pub mesh: TriMesh,
     /// With respect to the input, as part 0.
     pub origins: Origins,
@@ -132,12 +136,16 @@ pub struct Blended {
     pub first_blend_face: FaceId,
     /// How many strips were swept; fewer than curves where neighbouring curves share one.
     pub strips: usize,
+    /// How many pieces of surface were blended as a field.
+    pub fields: usize,
     /// How many corner patches were made.
     pub corners: usize,
     /// Largest | distance of a ball's centre to a base patch − radius | over the radius.
     pub residual: f64,
     /// Where the ball was made smaller: place, and the radius there.
     pub shrunk: Vec<(DVec3, f64)>,
+    /// Where sweeping failed and a field took its place: place, and what failed there.
+    pub fallbacks: Vec<(DVec3, &'static str)>,
     /// Share of the spine's length on which the ball has its full radius.
     pub full_share: f64,
 }
@@ -148,6 +156,9 @@ pub enum Error {
     /// There is nothing to blend.
     #[error("no blend curve given; lower the dihedral angle, or name a curve")]
     NoCurves,
+    /// A field cannot do what is asked for.
+    #[error("a field blends closed curves with an arc; {0}")]
+    NotByField(&'static str),
     /// The radius does not fit.
     #[error(
         "{what} at {at} with radius {radius}; {}",
@@ -201,13 +212,21 @@ pub fn blend(
     if let Surface::Keep(how) = &params.surface {
         return keep::blend(mesh, curves, params, how, watch);
     }
-    if params.surface == Surface::Field {
-        return field::blend(mesh, curves, params, watch);
+    if params.surface == Surface::Stitch {
+        return attempt(mesh, curves, params, ROUNDS, watch)
+            .or_else(|refusal| explained(mesh, curves, params, refusal, watch));
     }
-    let refusal = match attempt(mesh, curves, params, ROUNDS, watch) {
-        Ok(blended) => return Ok(blended),
-        Err(refusal) => refusal,
-    };
+    auto::blend(mesh, curves, params, watch)
+}
+
+/// The error for what stopped a sweep, with a smaller radius that works, if there is one.
+fn explained(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &Params,
+    refusal: Trouble,
+    watch: &Watch,
+) -> Result<Blended, Error> {
     match refusal {
         Trouble::Places { what, places } => {
             let mut workable = None;
@@ -436,9 +455,11 @@ fn assemble(
         origins: sewn.origins,
         first_blend_face: sewn.first_new_face,
         strips: count,
+        fields: 0,
         corners: layout.corners.len(),
         residual,
         shrunk: Vec::new(),
+        fallbacks: Vec::new(),
         full_share: 1.0,
     })
 }

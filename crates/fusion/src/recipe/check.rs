@@ -182,7 +182,7 @@ impl Recipe {
         let b = &self.boolean[i];
         match &b.radius {
             Some(radius) => {
-                self.rolling([&b.profile, &b.overlap], [&b.alpha, &b.tolerance], radius, diagonal).map(Some)
+                self.rolling([&b.profile, &b.overlap, &b.surface], [&b.alpha, &b.tolerance], radius, diagonal).map(Some)
             }
             None => Ok(None),
         }
@@ -191,7 +191,7 @@ impl Recipe {
     /// How a blend rolls.
     pub(super) fn rolling_of_blend(&self, i: usize, diagonal: f64) -> Result<blend::Params, Error> {
         let b = &self.blend[i];
-        self.rolling([&b.profile, &b.overlap], [&b.alpha, &b.tolerance], &b.radius, diagonal)
+        self.rolling([&b.profile, &b.overlap, &b.surface], [&b.alpha, &b.tolerance], &b.radius, diagonal)
     }
 
     /// How a polyhedron is rounded.
@@ -226,7 +226,7 @@ impl Recipe {
 
     fn rolling(
         &self,
-        [cross_section, overlap]: [&Option<Spanned<String>>; 2],
+        [cross_section, overlap, surface]: [&Option<Spanned<String>>; 3],
         [alpha, tolerance]: [&Option<Spanned<f64>>; 2],
         radius: &Spanned<Length>,
         diagonal: f64,
@@ -246,6 +246,15 @@ impl Recipe {
                 "shrink" => blend::Overlap::Shrink,
                 "error" => blend::Overlap::Error,
                 _ => return Err(self.error(text.span(), "overlap is shrink or error")),
+            };
+        }
+        if let Some(text) = surface {
+            params.surface = match text.get_ref().as_str() {
+                "auto" => blend::Surface::Auto,
+                "stitch" => blend::Surface::Stitch,
+                "field" => blend::Surface::Field,
+                "keep" => blend::Surface::Keep(blend::keep::Params::default()),
+                _ => return Err(self.error(text.span(), "a surface is auto, stitch, field or keep")),
             };
         }
         if let Some(alpha) = alpha {

@@ -118,6 +118,8 @@ pub struct Boolean {
     /// As for a blend.
     pub overlap: Option<Spanned<String>>,
     /// As for a blend.
+    pub surface: Option<Spanned<String>>,
+    /// As for a blend.
     pub alpha: Option<Spanned<f64>>,
     /// As for a blend.
     pub tolerance: Option<Spanned<f64>>,
@@ -163,6 +165,8 @@ pub struct Blend {
     pub profile: Option<Spanned<String>>,
     /// `"shrink"` (the default) or `"error"`.
     pub overlap: Option<Spanned<String>>,
+    /// `"auto"` (the default), `"stitch"`, `"field"` or `"keep"`.
+    pub surface: Option<Spanned<String>>,
     /// Reach of the base patches in radii, from 1 to 16.
     pub alpha: Option<Spanned<f64>>,
     /// Chord tolerance as a share of the radius, from 1e-6 to 0.5.

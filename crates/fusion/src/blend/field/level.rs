@@ -1,6 +1,8 @@
 //! The closed curves on a mesh where a scalar on a refined copy of it changes sign.
 
-use mesh_core::{Adjacency, Connected, FaceId, FaceOrigin, Faces, HalfedgeId, Origins, SurfacePoint, TriMesh, VertexOrigin};
+use mesh_core::{
+    Adjacency, Connected, FaceId, FaceOrigin, Faces, HalfedgeId, Origins, SurfacePoint, TriMesh, VertexOrigin,
+};
 use tri_intersect::SurfaceCurve;
 
 /// The curves, as points of the mesh that `origins` speaks of, with the negative side on the right. They cannot meet.

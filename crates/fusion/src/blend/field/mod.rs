@@ -31,8 +31,11 @@ use super::{Blended, Error, Overlap, Params, check, step_length};
 use glam::DVec3;
 use level::level_curves;
 use mark::scalar;
-use mesh_core::{Adjacency, Connected, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, Watch};
+use mesh_core::{
+    Adjacency, Connected, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, Watch,
+};
 use piece::{cut_out, kept_chords, put_back};
+use profile_nurbs::Profile;
 use sides::{Sides, between};
 use spine::{BlendCurve, Convexity, Dip, RadiusField};
 use surface::draw;
@@ -42,6 +45,15 @@ use tri_intersect::{EmbedError, EmbedParams, Embedded, embed};
 /// How often the ball is made smaller where the result meets itself.
 const ROUNDS: usize = 6;
 
+/// Whether all curves can be blended as a field.
+pub(crate) fn serves(curves: &[BlendCurve], params: &Params) -> bool {
+    params.surface != super::Surface::Stitch && is_arc(params) && curves.iter().all(|c| c.closed)
+}
+
+fn is_arc(params: &Params) -> bool {
+    matches!(params.profile, Profile::Arc) && params.reach.is_none()
+}
+
 /// Blends `curves`, all of one convexity, as a field.
 ///
 /// # Errors
@@ -49,11 +61,16 @@ const ROUNDS: usize = 6;
 pub(crate) fn blend(
     mesh: &Connected<TriMesh>,
     curves: &[BlendCurve],
+    convexity: Convexity,
     params: &Params,
     watch: &Watch,
 ) -> Result<Blended, Error> {
-    let Some(first) = curves.first() else { return Err(Error::NoCurves) };
-    let convexity = first.convexity(mesh).unwrap_or(Convexity::Concave);
+    if curves.iter().any(|c| !c.closed) {
+        return Err(Error::NotByField("use --surface stitch for open ones"));
+    }
+    if !is_arc(params) {
+        return Err(Error::NotByField("use --surface stitch for other profiles"));
+    }
     let sides = Sides::new(mesh, curves, convexity).map_err(|t| t.into_error(params.radius))?;
     let edge = step_length(mesh, curves, params);
     let mut radius = RadiusField::constant(params.radius);
@@ -62,6 +79,7 @@ pub(crate) fn blend(
         watch.step("blend", round as f64 / ROUNDS as f64)?;
         let trouble = match attempt(&sides, &radius, edge, params, watch) {
             Ok(mut blended) => {
+                blended.full_share = full_share(mesh, curves, &radius);
                 blended.shrunk = radius.dips.iter().map(|d| (d.at, radius.at(d.at).0)).collect();
                 return Ok(blended);
             }
@@ -77,6 +95,19 @@ pub(crate) fn blend(
         shrink(&mut radius, &mut spots, places);
     }
     Err(Error::NoCurves)
+}
+
+/// Share of the curves' length on which the ball has its full radius.
+fn full_share(mesh: &Connected<TriMesh>, curves: &[BlendCurve], radius: &RadiusField) -> f64 {
+    let (mut full, mut total) = (0.0, 0.0);
+    for &h in curves.iter().flat_map(|c| &c.halfedges) {
+        let [a, b] = [mesh.position(mesh.tail(h)), mesh.position(mesh.head(h))];
+        total += a.distance(b);
+        if radius.at(a.midpoint(b)).0 >= 0.999 * radius.base {
+            full += a.distance(b);
+        }
+    }
+    if total > 0.0 { full / total } else { 1.0 }
 }
 
 /// Makes the ball smaller around the places.
@@ -111,8 +142,8 @@ fn attempt(
 ) -> Result<Blended, Trouble> {
     let mesh = sides.mesh;
     let (fine, origins, of) = refined(sides, radius.base)?;
-    let fine = Connected::new(fine)
-        .map_err(|e| Trouble::at("the mesh is not a manifold", e.place.into_iter().collect()))?;
+    let fine =
+        Connected::new(fine).map_err(|e| Trouble::at("the mesh is not a manifold", e.place.into_iter().collect()))?;
     let seam = between(&fine, &of);
     let value = scalar(&fine, &of, &seam, sides, radius);
     let loops = level_curves(mesh, &fine, &origins, &value);
@@ -137,9 +168,11 @@ fn attempt(
         origins: sewn.origins,
         first_blend_face: sewn.first_new_face,
         strips: 0,
+        fields: 1,
         corners: 0,
         residual: 0.0,
         shrunk: vec![],
+        fallbacks: vec![],
         full_share: 1.0,
     })
 }
@@ -181,7 +214,10 @@ fn enclosed(sides: &Sides<'_>, cut: &Connected<&TriMesh>, embedded: &Embedded) -
     let walls = embedded.curves.iter().flat_map(|c| curve_edges(c, true));
     let removed = flood(cut, walls, &seeds);
     for [a, b] in embedded.curves.iter().flat_map(|c| curve_edges(c, true)) {
-        let faces = cut.ring(a).find(|&h| cut.head(h) == b).map(|h| [Some(h), cut.twin(h)].map(|h| h.map(|h| removed[h.face()])));
+        let faces = cut
+            .ring(a)
+            .find(|&h| cut.head(h) == b)
+            .map(|h| [Some(h), cut.twin(h)].map(|h| h.map(|h| removed[h.face()])));
         if !matches!(faces, Some([Some(x), Some(y)]) if x != y) {
             return Err(Trouble::at("the linkages do not enclose the blend curve", vec![cut.position(a)]));
         }

@@ -41,7 +41,11 @@ pub(crate) fn put_back(rim: &[VertexId], made: &TriMesh, first_new: u32) -> Piec
 }
 
 /// The edges of the kept faces between boundary vertices of the piece, in the piece's numbers, low first.
-pub(crate) fn kept_chords(whole: &Connected<&TriMesh>, removed: &FaceMap<bool>, rim: &[VertexId]) -> BTreeSet<[VertexId; 2]> {
+pub(crate) fn kept_chords(
+    whole: &Connected<&TriMesh>,
+    removed: &FaceMap<bool>,
+    rim: &[VertexId],
+) -> BTreeSet<[VertexId; 2]> {
     let mut own = vec![u32::MAX; whole.vertex_count()];
     for (i, v) in rim.iter().enumerate() {
         own[v.index()] = i as u32;
@@ -91,8 +95,7 @@ pub(crate) fn split_chords(mesh: &mut TriMesh, rim: usize, taken: &BTreeSet<[Ver
             })
         });
         // Corners and middles in order around the face.
-        let around: Vec<VertexId> =
-            (0..3).flat_map(|k| std::iter::once(face[k]).chain(middle[k])).collect();
+        let around: Vec<VertexId> = (0..3).flat_map(|k| std::iter::once(face[k]).chain(middle[k])).collect();
         match (around.len(), middle) {
             (3, _) => faces.push(face),
             (6, [Some(x), Some(y), Some(z)]) => {

@@ -76,12 +76,7 @@ impl Plate {
         }
         entries.extend(totals.iter().enumerate().map(|(v, t)| (v as u32, v as u32, -t)));
         let turned = entries.iter().map(|&(i, j, w)| (j, i, w)).collect();
-        Self {
-            laplacian: Rows::from(entries, bearing),
-            transposed: Rows::from(turned, points.len()),
-            areas,
-            free,
-        }
+        Self { laplacian: Rows::from(entries, bearing), transposed: Rows::from(turned, points.len()), areas, free }
     }
 
     /// Whether point `v` may move.

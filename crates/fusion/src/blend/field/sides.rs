@@ -68,8 +68,7 @@ impl<'a> Sides<'a> {
         let outside = if away.dot(side) >= 0.0 { 1.0 } else { -1.0 };
         // Right on the surface, the direction away from it is noise.
         let size = self.mesh.mesh().triangle(near.face)[0].distance(p).max(near.distance);
-        let gradient =
-            if near.distance > 1e-9 * size { (outside * away).normalize_or(normal) } else { normal };
+        let gradient = if near.distance > 1e-9 * size { (outside * away).normalize_or(normal) } else { normal };
         Some(Seen { distance: outside * near.distance, gradient, foot: near.point, normal })
     }
 

@@ -55,7 +55,8 @@ pub(crate) fn draw(
 fn even_out(mesh: TriMesh, edge: f64, watch: &Watch) -> Result<TriMesh, Trouble> {
     let at = mesh.positions.first().copied();
     let failed = |_| Trouble::at("the blend cannot be tessellated", at.into_iter().collect());
-    let connected = Connected::new(mesh).map_err(|e| Trouble::at("the linkages touch", e.place.into_iter().collect()))?;
+    let connected =
+        Connected::new(mesh).map_err(|e| Trouble::at("the linkages touch", e.place.into_iter().collect()))?;
     let mut sizes = graded_sizes(&connected, edge, SLOPE).map_err(failed)?;
     // Linkages have short edges where they pass close by vertices; small triangles beside them would crumple.
     sizes.as_mut_slice().iter_mut().for_each(|s| *s = s.max(FINEST * edge));
@@ -175,4 +176,3 @@ fn outward(sides: &Sides<'_>, p: DVec3) -> DVec3 {
     let nearer = seen.into_iter().flatten().min_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()));
     nearer.map_or(DVec3::Z, |s| sides.sign * s.normal)
 }
-

@@ -90,9 +90,11 @@ pub fn blend(
         mesh: moved,
         origins,
         strips: rails.len(),
+        fields: 0,
         corners: 0,
         residual,
         shrunk: Vec::new(),
+        fallbacks: Vec::new(),
         full_share: 1.0,
     })
 }

@@ -1,0 +1,192 @@
+//! Which curves are swept and which are blended as a field, one after the other on the same mesh.
+
+use super::trouble::Trouble;
+use super::{Blended, Error, Params, ROUNDS, Surface, attempt, explained, field};
+use glam::DVec3;
+use mesh_core::{Adjacency, Connected, Faces, Origins, Positions, Stage, TriMesh, VertexId, VertexOrigin, Watch};
+use spine::{BlendCurve, Convexity};
+
+/// Curves nearer to each other than this, in radii, are blended in the same way: their blends may meet.
+const NEIGHBOURS: f64 = 5.0;
+
+/// Sweeps all curves, or with [`Surface::Field`] none; those near a place where that fails are blended as a field.
+///
+/// # Errors
+/// That of the sweep where a field cannot serve, or where that fails too.
+pub(crate) fn blend(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &Params,
+    watch: &Watch,
+) -> Result<Blended, Error> {
+    if curves.is_empty() {
+        return Err(Error::NoCurves);
+    }
+    let as_asked = params.surface == Surface::Field;
+    let mut so_far = SoFar::new(mesh, curves);
+    let mut by_field = vec![as_asked; curves.len()];
+    let mut refusal = None;
+    while by_field.contains(&false) {
+        let chosen: Vec<BlendCurve> = so_far.curves(|i| !by_field[i])?;
+        match attempt(mesh, &chosen, params, ROUNDS, watch) {
+            Ok(swept) => {
+                so_far.add(swept, |i| !by_field[i])?;
+                break;
+            }
+            Err(Trouble::Cancelled(c)) => return Err(c.into()),
+            Err(trouble) if !field::serves(curves, params) => return explained(mesh, curves, params, trouble, watch),
+            Err(trouble) => {
+                so_far.blended.fallbacks.extend(hand_over(mesh, curves, params, &trouble, &mut by_field));
+                refusal = Some(trouble);
+            }
+        }
+    }
+    for convexity in [Convexity::Concave, Convexity::Convex] {
+        let own = |i: usize| by_field[i] && curves[i].convexity(mesh).unwrap_or(Convexity::Concave) == convexity;
+        let chosen = so_far.curves(own)?;
+        if chosen.is_empty() {
+            continue;
+        }
+        let made = match &so_far.mesh {
+            Some(changed) => field::blend(changed, &chosen, convexity, params, watch),
+            None => field::blend(mesh, &chosen, convexity, params, watch),
+        };
+        match (made, refusal.take()) {
+            (Ok(made), first) => {
+                so_far.add(made, own)?;
+                refusal = first;
+            }
+            (Err(e @ Error::Cancelled(_)), _) | (Err(e), None) => return Err(e),
+            (Err(_), Some(refusal)) => return explained(mesh, curves, params, refusal, watch),
+        }
+    }
+    Ok(so_far.blended)
+}
+
+/// Marks the curves around the places where sweeping fails; all of them if no place is near one. Returns for each such
+/// group of curves a place and what fails there.
+fn hand_over(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &Params,
+    trouble: &Trouble,
+    by_field: &mut [bool],
+) -> Vec<(DVec3, &'static str)> {
+    let (what, places) = match trouble {
+        Trouble::Places { what, places } => (*what, &places[..]),
+        _ => ("the swept strip fails", &[][..]),
+    };
+    let points: Vec<Vec<DVec3>> = curves.iter().map(|c| c.points(mesh)).collect();
+    let distance = |a: &[DVec3], b: &[DVec3]| {
+        let pairs = a.iter().flat_map(|p| b.iter().map(move |q| p.distance_squared(*q)));
+        pairs.fold(f64::INFINITY, f64::min).sqrt()
+    };
+    let mut told = vec![];
+    for &place in places {
+        let near = (0..curves.len()).filter(|&i| !points[i].is_empty());
+        let Some(nearest) =
+            near.min_by(|&i, &j| distance(&points[i], &[place]).total_cmp(&distance(&points[j], &[place])))
+        else {
+            break;
+        };
+        if by_field[nearest] {
+            continue;
+        }
+        told.push((place, what));
+        // The curve, its neighbours, and theirs.
+        let mut stack = vec![nearest];
+        while let Some(i) = stack.pop() {
+            if std::mem::replace(&mut by_field[i], true) {
+                continue;
+            }
+            let reach = NEIGHBOURS * params.radius;
+            stack.extend((0..curves.len()).filter(|&j| !by_field[j] && distance(&points[i], &points[j]) < reach));
+        }
+    }
+    if told.is_empty() {
+        by_field.fill(true);
+        let at = places.first().or_else(|| points.iter().flatten().next()).copied().unwrap_or(DVec3::ZERO);
+        told.push((at, what));
+    }
+    told
+}
+
+/// The mesh as it is after some curves have been blended.
+struct SoFar<'a> {
+    input: &'a Connected<TriMesh>,
+    all: &'a [BlendCurve],
+    /// The present mesh; `None` while it is the input.
+    mesh: Option<Connected<TriMesh>>,
+    blended: Blended,
+    /// Length of the curves blended so far.
+    length: f64,
+}
+
+impl<'a> SoFar<'a> {
+    fn new(input: &'a Connected<TriMesh>, all: &'a [BlendCurve]) -> Self {
+        let blended = Blended {
+            mesh: TriMesh::default(),
+            origins: Origins::default(),
+            first_blend_face: mesh_core::FaceId(0),
+            strips: 0,
+            fields: 0,
+            corners: 0,
+            residual: 0.0,
+            shrunk: vec![],
+            fallbacks: vec![],
+            full_share: 1.0,
+        };
+        Self { input, all, mesh: None, blended, length: 0.0 }
+    }
+
+    /// Some of the curves, as curves of the present mesh.
+    fn curves(&self, chosen: impl Fn(usize) -> bool) -> Result<Vec<BlendCurve>, Error> {
+        let chosen = (0..self.all.len()).filter(|&i| chosen(i)).map(|i| &self.all[i]);
+        let Some(mesh) = &self.mesh else { return Ok(chosen.cloned().collect()) };
+        let mut now = vec![None; self.input.vertex_count()];
+        for (v, origin) in (0u32..).zip(self.blended.origins.vertices.as_slice()) {
+            if let VertexOrigin::Input { vertex, .. } = origin {
+                now[vertex.index()] = Some(VertexId(v));
+            }
+        }
+        let moved = |curve: &BlendCurve| {
+            let halfedge = |h| {
+                let ends = [self.input.tail(h), self.input.head(h)];
+                let [a, b] = [now[ends[0].index()]?, now[ends[1].index()]?];
+                mesh.ring(a).find(|&g| mesh.head(g) == b)
+            };
+            let halfedges: Option<Vec<_>> = curve.halfedges.iter().map(|&h| halfedge(h)).collect();
+            let at = || curve.halfedges.first().map_or(DVec3::ZERO, |&h| self.input.position(self.input.tail(h)));
+            let lost = || Trouble::at("a strip covers a neighbouring curve", vec![at()]).into_error(f64::NAN);
+            Ok(BlendCurve { halfedges: halfedges.ok_or_else(lost)?, closed: curve.closed })
+        };
+        chosen.map(moved).collect()
+    }
+
+    /// Takes over what became of the present mesh, and the account of it.
+    fn add(&mut self, made: Blended, chosen: impl Fn(usize) -> bool) -> Result<(), Error> {
+        let own: f64 = (0..self.all.len()).filter(|&i| chosen(i)).map(|i| self.all[i].length(self.input)).sum();
+        let so_far = &mut self.blended;
+        so_far.origins = match &self.mesh {
+            Some(before) => {
+                let stage = Stage { origins: &so_far.origins, faces: before };
+                made.origins.compose(&[stage], &[self.input as &dyn Faces])
+            }
+            None => made.origins,
+        };
+        if self.mesh.is_none() {
+            so_far.first_blend_face = made.first_blend_face;
+        }
+        so_far.strips += made.strips;
+        so_far.fields += made.fields;
+        so_far.corners += made.corners;
+        so_far.residual = so_far.residual.max(made.residual);
+        so_far.shrunk.extend(made.shrunk);
+        so_far.full_share =
+            (so_far.full_share * self.length + made.full_share * own) / (self.length + own).max(f64::MIN_POSITIVE);
+        self.length += own;
+        so_far.mesh.clone_from(&made.mesh);
+        self.mesh = Some(Connected::new(made.mesh)?);
+        Ok(())
+    }
+}
