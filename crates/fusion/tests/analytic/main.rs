@@ -9,12 +9,14 @@
 //! | `main.rs` | bounds, order, validity and locality of every case |
 //! | `balls.rs` | balls against the input's triangles |
 //! | `volume.rs` | material added and taken |
+//! | `field.rs` | the blend as a field |
 //! | `symmetry.rs` | threads, order of the parts, quarter turns |
 //!
 //! `cargo test -p fusion --test analytic -- --nocapture` prints the figures.
 
 mod balls;
 mod cases;
+mod field;
 mod measure;
 mod symmetry;
 mod truth;

@@ -90,7 +90,7 @@ fn smoothed(mesh: &Connected<TriMesh>, value: &[f64], sigma: f64) -> Vec<f64> {
             let j = own[mesh.head(h).index()];
             if j != u32::MAX {
                 let weight = cotangent(mesh, h) + mesh.twin(h).map_or(0.0, |t| cotangent(mesh, t));
-                columns.push((j, sigma * sigma * (0.5 * weight).clamp(0.01, 10.0)));
+                columns.push((j, 0.5 * sigma * sigma * weight));
             }
         }
         starts.push(columns.len());
@@ -145,7 +145,8 @@ fn conjugate_gradients(apply: &impl Fn(&[f64]) -> Vec<f64>, diagonal: &[f64], ri
 fn cotangent(mesh: &Connected<TriMesh>, h: HalfedgeId) -> f64 {
     let [a, b, c] = [mesh.tail(h), mesh.head(h), mesh.tail(h.prev())].map(|v| mesh.position(v));
     let (u, v) = (a - c, b - c);
-    u.dot(v) / u.cross(v).length().max(f64::MIN_POSITIVE)
+    // Clamping negative ones would spoil linear functions; the sum is definite as it is.
+    u.dot(v) / u.cross(v).length().max(1e-4 * (u.length_squared() + v.length_squared())).max(f64::MIN_POSITIVE)
 }
 
 /// Distances from the seam along edges, up to `far`.

@@ -34,8 +34,9 @@ use mark::scalar;
 use mesh_core::{
     Adjacency, Connected, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, Watch,
 };
-use piece::{cut_out, kept_chords, put_back};
+use piece::{CutOut, cut_out, kept_chords, put_back};
 use profile_nurbs::Profile;
+use rayon::prelude::*;
 use sides::{Sides, between};
 use spine::{BlendCurve, Convexity, Dip, RadiusField};
 use surface::draw;
@@ -53,6 +54,10 @@ pub(crate) fn serves(curves: &[BlendCurve], params: &Params) -> bool {
 fn is_arc(params: &Params) -> bool {
     matches!(params.profile, Profile::Arc) && params.reach.is_none()
 }
+
+/// Half the length over which linkages are evened out, and how far their points may be moved to spare slivers, in radii.
+const FAIRED: f64 = 0.25;
+const SNAP: f64 = 0.02;
 
 /// Blends `curves`, all of one convexity, as a field.
 ///
@@ -75,9 +80,10 @@ pub(crate) fn blend(
     let edge = step_length(mesh, curves, params);
     let mut radius = RadiusField::constant(params.radius);
     let mut spots: Vec<(DVec3, u32)> = vec![];
+    let mut earlier = vec![];
     for round in 0.. {
         watch.step("blend", round as f64 / ROUNDS as f64)?;
-        let trouble = match attempt(&sides, &radius, edge, params, watch) {
+        let trouble = match attempt(&sides, &radius, edge, params, &mut earlier, watch) {
             Ok(mut blended) => {
                 blended.full_share = full_share(mesh, curves, &radius);
                 blended.shrunk = radius.dips.iter().map(|d| (d.at, radius.at(d.at).0)).collect();
@@ -133,11 +139,30 @@ fn shrink(radius: &mut RadiusField, spots: &mut Vec<(DVec3, u32)>, places: &[DVe
     radius.dips = spots.iter().map(dip).collect();
 }
 
+/// A piece that was drawn in an earlier round: most stay the same where the ball is made smaller in one place.
+#[derive(Clone)]
+struct Drawn {
+    from: Vec<DVec3>,
+    radii: Vec<f64>,
+    made: TriMesh,
+}
+
+impl Drawn {
+    fn radii(piece: &CutOut, radius: &RadiusField) -> Vec<f64> {
+        piece.mesh.positions.iter().map(|&p| radius.at(p).0).collect()
+    }
+
+    fn is_of(&self, piece: &CutOut, radius: &RadiusField) -> bool {
+        self.from == piece.mesh.positions && self.radii == Self::radii(piece, radius)
+    }
+}
+
 fn attempt(
     sides: &Sides<'_>,
     radius: &RadiusField,
     edge: f64,
     params: &Params,
+    earlier: &mut Vec<Drawn>,
     watch: &Watch,
 ) -> Result<Blended, Trouble> {
     let mesh = sides.mesh;
@@ -146,29 +171,44 @@ fn attempt(
         Connected::new(fine).map_err(|e| Trouble::at("the mesh is not a manifold", e.place.into_iter().collect()))?;
     let seam = between(&fine, &of);
     let value = scalar(&fine, &of, &seam, sides, radius);
-    let loops = level_curves(mesh, &fine, &origins, &value);
+    let loops = level_curves(mesh, &fine, &origins, &value, FAIRED * radius.base);
     if loops.is_empty() {
         let at = seam.first().map(|&v| fine.position(v));
         return Err(Trouble::at("the ball touches all of the surface", at.into_iter().collect()));
     }
-    let how = EmbedParams { snap: 0.1, reach: params.snap * radius.base };
+    let how = EmbedParams { snap: 0.15, reach: params.snap.max(SNAP) * radius.base };
     let embedded = embed(mesh, &loops, &how, watch).map_err(refusal)?;
     let cut = Connected::new(&embedded.mesh)
         .map_err(|e| Trouble::at("the cut mesh is not a manifold", e.place.into_iter().collect()))?;
     let removed = enclosed(sides, &cut, &embedded)?;
-    let piece = cut_out(&embedded.mesh, &removed, &embedded.curves);
-    let taken = kept_chords(&cut, &removed, &piece.rim);
-    let made = draw(&piece, sides, radius, edge, &taken, watch)?;
-    let back = put_back(&piece.rim, &made, embedded.mesh.vertex_count() as u32);
+    let pieces = cut_out(&embedded.mesh, &removed, &embedded.curves).pieces();
+    let drawn: Vec<Result<Drawn, Trouble>> = pieces
+        .par_iter()
+        .map(|piece| {
+            if let Some(same) = earlier.iter().find(|d| d.is_of(piece, radius)) {
+                return Ok(same.clone());
+            }
+            let taken = kept_chords(&cut, &removed, &piece.rim);
+            let made = draw(piece, sides, radius, edge, &taken, watch)?;
+            Ok(Drawn { from: piece.mesh.positions.clone(), radii: Drawn::radii(piece, radius), made })
+        })
+        .collect();
+    *earlier = drawn.into_iter().collect::<Result<_, _>>()?;
+    let mut first_new = embedded.mesh.vertex_count() as u32;
+    let mut back = Vec::with_capacity(pieces.len());
+    for (piece, drawn) in pieces.iter().zip(earlier.iter()) {
+        back.push(put_back(&piece.rim, &drawn.made, first_new));
+        first_new += (drawn.made.positions.len() - piece.rim.len()) as u32;
+    }
     let opened = Opened { linkages: vec![], joints: vec![], stops: vec![], loops: vec![], embedded };
-    let sewn = sew(&opened, &removed, &[back]);
+    let sewn = sew(&opened, &removed, &back);
     check(&sewn, watch)?;
     Ok(Blended {
         mesh: sewn.mesh,
         origins: sewn.origins,
         first_blend_face: sewn.first_new_face,
         strips: 0,
-        fields: 1,
+        fields: back.len(),
         corners: 0,
         residual: 0.0,
         shrunk: vec![],

@@ -1,7 +1,7 @@
 //! What lies between the linkages as a mesh of its own, to be reshaped and put back.
 
 use crate::blend::strip::Piece;
-use mesh_core::{Adjacency, Connected, FaceMap, Faces, HalfedgeId, TriMesh, VertexId, boundary_loops};
+use mesh_core::{Adjacency, Connected, FaceMap, Faces, HalfedgeId, TriMesh, VertexId, boundary_loops, components};
 use std::collections::BTreeSet;
 
 /// Some faces of a mesh by themselves.
@@ -31,6 +31,31 @@ pub(crate) fn cut_out(whole: &TriMesh, chosen: &FaceMap<bool>, rims: &[Vec<Verte
         mesh.faces.push(whole.corners(f).map(|v| add(v, &mut mesh.positions)));
     }
     CutOut { mesh, rim }
+}
+
+impl CutOut {
+    /// Its connected pieces, in the order of their first faces.
+    pub fn pieces(&self) -> Vec<Self> {
+        let all = components(&self.mesh);
+        let mut own = vec![u32::MAX; self.mesh.positions.len()];
+        let mut pieces: Vec<Self> =
+            all.face_counts.iter().map(|_| Self { mesh: TriMesh::default(), rim: vec![] }).collect();
+        let mut label_of = vec![u32::MAX; own.len()];
+        for (f, &label) in self.mesh.faces.iter().zip(all.labels.as_slice()) {
+            f.iter().for_each(|v| label_of[v.index()] = label);
+        }
+        // Vertices in order, so that those of the boundary come first again.
+        for (v, &label) in label_of.iter().enumerate().filter(|l| *l.1 != u32::MAX) {
+            let piece = &mut pieces[label as usize];
+            own[v] = piece.mesh.positions.len() as u32;
+            piece.mesh.positions.push(self.mesh.positions[v]);
+            piece.rim.extend(self.rim.get(v));
+        }
+        for (f, &label) in self.mesh.faces.iter().zip(all.labels.as_slice()) {
+            pieces[label as usize].mesh.faces.push(f.map(|v| VertexId(own[v.index()])));
+        }
+        pieces
+    }
 }
 
 /// The reshaped piece in the numbers that sewing expects: those of the whole on the boundary, from `first_new` on within.

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 /// A linear thin plate over the vertices of a mesh, some of them fixed.
 ///
-/// It minimises ∫|Δx|² + ∫ q·|x − t|²/σ⁴, discretised with the cotangent weights of the shape it is built on, and with
-/// every vertex inside or on the boundary bearing energy.
+/// It minimises ∫|Δx|² + ∫ q·|x − t|²/σ⁴, discretised on the shape it is built on, every vertex inside or
+/// on the boundary bearing energy.
 pub(crate) struct Plate {
     laplacian: Rows,
     transposed: Rows,
@@ -43,38 +43,45 @@ impl Rows {
     }
 }
 
-/// Bounds of an edge's weight: obtuse triangles must not push, nor needles hold.
-const WEIGHTS: (f64, f64) = (0.05, 5.0);
+/// Half the widest angle that is told apart from a straight one, in radians: the weights grow beyond bounds there.
+const WIDEST: f64 = 1.53;
 
 impl Plate {
     /// The first `bearing` of the points bear energy; `free` tells which may move.
     pub fn new(points: &[DVec3], faces: &[[u32; 3]], bearing: usize, free: Vec<bool>) -> Self {
-        let mut halves: Vec<(u32, u32, f64)> = Vec::with_capacity(6 * faces.len());
+        let mut weights: Vec<(u32, u32, f64)> = Vec::with_capacity(6 * faces.len());
         let mut areas = vec![0.0; points.len()];
         for f in faces {
             let p = f.map(|v| points[v as usize]);
             let area = 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).length();
             for k in 0..3 {
-                let (a, b, c) = (f[k], f[(k + 1) % 3], p[(k + 2) % 3]);
-                let (u, v) = (p[k] - c, p[(k + 1) % 3] - c);
-                let half = 0.5 * u.dot(v) / u.cross(v).length().max(f64::MIN_POSITIVE);
-                halves.extend([(a, b, half), (b, a, half)]);
-                areas[a as usize] += area / 3.0;
+                areas[f[k] as usize] += area / 3.0;
+                if f[k] as usize >= bearing {
+                    continue;
+                }
+                // Mean value weights [Floater2003] are positive for any triangles and vanish on linear functions.
+                let (u, v) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
+                let half = (0.5 * u.cross(v).length().atan2(u.dot(v))).min(WIDEST).tan();
+                weights.push((f[k], f[(k + 1) % 3], half / u.length().max(f64::MIN_POSITIVE)));
+                weights.push((f[k], f[(k + 2) % 3], half / v.length().max(f64::MIN_POSITIVE)));
             }
         }
-        halves.retain(|h| (h.0 as usize) < bearing);
-        halves.sort_by_key(|t| (t.0, t.1));
+        weights.sort_by_key(|t| (t.0, t.1));
         let mean = areas[..bearing].iter().sum::<f64>() / bearing.max(1) as f64;
-        let mut entries: Vec<(u32, u32, f64)> = Vec::with_capacity(halves.len() / 2 + bearing);
-        let mut totals = vec![0.0; bearing];
-        for edge in halves.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            let v = edge[0].0 as usize;
-            let scale = 1.0 / areas[v].max(0.05 * mean).sqrt();
-            let weight = scale * edge.iter().map(|e| e.2).sum::<f64>().clamp(WEIGHTS.0, WEIGHTS.1);
-            totals[v] += weight;
-            entries.push((edge[0].0, edge[0].1, weight));
+        let mut entries: Vec<(u32, u32, f64)> = Vec::with_capacity(weights.len() / 2 + bearing);
+        for row in weights.chunk_by(|a, b| a.0 == b.0) {
+            let v = row[0].0 as usize;
+            // Scaled so that the Laplacian of |x|² is four, and by the root of the vertex' share of the area.
+            let squares: f64 = row.iter().map(|e| e.2 * points[e.1 as usize].distance_squared(points[v])).sum();
+            let scale = 4.0 * areas[v].max(0.05 * mean).sqrt() / squares.max(f64::MIN_POSITIVE);
+            let mut total = 0.0;
+            for edge in row.chunk_by(|a, b| a.1 == b.1) {
+                let weight = scale * edge.iter().map(|e| e.2).sum::<f64>();
+                total += weight;
+                entries.push((edge[0].0, edge[0].1, weight));
+            }
+            entries.push((v as u32, v as u32, -total));
         }
-        entries.extend(totals.iter().enumerate().map(|(v, t)| (v as u32, v as u32, -t)));
         let turned = entries.iter().map(|&(i, j, w)| (j, i, w)).collect();
         Self { laplacian: Rows::from(entries, bearing), transposed: Rows::from(turned, points.len()), areas, free }
     }

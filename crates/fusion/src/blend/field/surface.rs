@@ -114,6 +114,11 @@ fn settle(mesh: &Connected<&TriMesh>, sides: &Sides<'_>, radius: &RadiusField, e
             }
         }
     }
+    if last {
+        // What the plate's stiffness takes away is put on top of the targets once.
+        let lifted: Vec<DVec3> = targets.iter().zip(&x).map(|(t, x)| 2.0 * *t - *x).collect();
+        plate.settle(&mut x, &lifted, &pull, 1e-4);
+    }
     x.truncate(n);
     x
 }
