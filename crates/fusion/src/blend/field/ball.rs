@@ -40,7 +40,7 @@ pub(crate) fn target(sides: &Sides<'_>, radius: &RadiusField, p: DVec3) -> Optio
         if step + 3 < STEPS {
             s += aside.clamp(-0.5 * r, 0.5 * r) * tangent;
         }
-        if !(s.distance(near.foot) < 12.0 * r) {
+        if s.distance(near.foot) >= 12.0 * r || !s.is_finite() {
             return None;
         }
     }

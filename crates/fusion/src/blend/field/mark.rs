@@ -69,7 +69,9 @@ fn scan(
         next = beyond;
     }
     // The seam itself is always under the ball.
-    seam.iter().for_each(|v| value[v.index()] = value[v.index()].min(-0.1));
+    for v in seam {
+        value[v.index()] = value[v.index()].min(-0.1);
+    }
     value.iter_mut().filter(|f| f.is_nan()).for_each(|f| *f = f64::INFINITY);
     value
 }
@@ -154,7 +156,9 @@ fn reach(mesh: &Connected<TriMesh>, seam: &[VertexId], far: f64) -> Vec<(VertexI
     // Non-negative floats are ordered as their bits are.
     let mut best = vec![f64::INFINITY; mesh.vertex_count()];
     let mut queue: BinaryHeap<Reverse<(u64, VertexId)>> = seam.iter().map(|&v| Reverse((0, v))).collect();
-    seam.iter().for_each(|v| best[v.index()] = 0.0);
+    for v in seam {
+        best[v.index()] = 0.0;
+    }
     let mut found = vec![];
     while let Some(Reverse((bits, v))) = queue.pop() {
         let d = f64::from_bits(bits);
@@ -208,7 +212,9 @@ fn one_region(mesh: &Connected<TriMesh>, value: &mut [f64], seam: &[VertexId], r
             at += 1;
         }
         if small {
-            piece.iter().for_each(|v| value[v.index()] = -SLIGHT);
+            for v in piece {
+                value[v.index()] = -SLIGHT;
+            }
         }
     }
     // Zeros would put curves through vertices.

@@ -133,7 +133,7 @@ fn shrink(radius: &mut RadiusField, spots: &mut Vec<(DVec3, u32)>, places: &[DVe
     let base = radius.base;
     let dip = |&(at, count): &(DVec3, u32)| Dip {
         at,
-        factor: 0.65f64.powi(count as i32),
+        factor: 0.65f64.powf(f64::from(count)),
         extent: base * (3.0 + 0.5 * f64::from(count)),
     };
     radius.dips = spots.iter().map(dip).collect();

@@ -42,7 +42,9 @@ impl CutOut {
             all.face_counts.iter().map(|_| Self { mesh: TriMesh::default(), rim: vec![] }).collect();
         let mut label_of = vec![u32::MAX; own.len()];
         for (f, &label) in self.mesh.faces.iter().zip(all.labels.as_slice()) {
-            f.iter().for_each(|v| label_of[v.index()] = label);
+            for v in f {
+                label_of[v.index()] = label;
+            }
         }
         // Vertices in order, so that those of the boundary come first again.
         for (v, &label) in label_of.iter().enumerate().filter(|l| *l.1 != u32::MAX) {

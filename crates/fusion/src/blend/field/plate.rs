@@ -114,7 +114,7 @@ impl Plate {
         let mut size = dot(&residual, &scaled);
         let enough = accuracy * accuracy * size;
         for _ in 0..MOST_STEPS {
-            if !(size > enough) {
+            if size <= enough || size.is_nan() {
                 break;
             }
             let image = apply(&direction);
