@@ -27,7 +27,7 @@ mod surface;
 use super::linkage::Opened;
 use super::sew::sew;
 use super::trouble::Trouble;
-use super::{Blended, Error, Overlap, Params, check, step_length};
+use super::{Blended, Error, Overlap, Params, Radii, check, step_length};
 use glam::DVec3;
 use level::level_curves;
 use mark::scalar;
@@ -48,7 +48,10 @@ const ROUNDS: usize = 6;
 
 /// Whether all curves can be blended as a field.
 pub(crate) fn serves(curves: &[BlendCurve], params: &Params) -> bool {
-    params.surface != super::Surface::Stitch && is_arc(params) && curves.iter().all(|c| c.closed)
+    params.surface != super::Surface::Stitch
+        && is_arc(params)
+        && params.radii == Radii::default()
+        && curves.iter().all(|c| c.closed)
 }
 
 fn is_arc(params: &Params) -> bool {
@@ -75,6 +78,9 @@ pub(crate) fn blend(
     }
     if !is_arc(params) {
         return Err(Error::NotByField("use --surface stitch for other profiles"));
+    }
+    if params.radii != Radii::default() {
+        return Err(Error::NotByField("use --surface stitch for radii that vary"));
     }
     let sides = Sides::new(mesh, curves, convexity).map_err(|t| t.into_error(params.radius))?;
     let edge = step_length(mesh, curves, params);
