@@ -89,6 +89,16 @@ impl Field {
         self.sum.gradients(self.kernel, &self.normalised(points), out);
     }
 
+    /// Both at many points, with the same bits as each alone and faster than one after the other. All three slices must be
+    /// of one length.
+    pub fn values_and_gradients(&self, points: &[DVec3], values: &mut [f64], gradients: &mut [DVec3]) {
+        assert!(points.len() == values.len() && points.len() == gradients.len(), "one value and gradient per point");
+        self.sum.values_and_gradients(self.kernel, &self.normalised(points), values, gradients);
+        for v in values {
+            *v *= self.scale;
+        }
+    }
+
     fn normalised(&self, points: &[DVec3]) -> Vec<DVec3> {
         points.iter().map(|&p| (p - self.centre) / self.scale).collect()
     }

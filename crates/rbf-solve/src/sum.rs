@@ -75,6 +75,54 @@ impl Sum {
         }));
     }
 
+    /// Both at once, in little more time than the gradient alone. O(points · centres).
+    pub(crate) fn values_and_gradients(
+        &self,
+        kernel: Kernel,
+        points: &[DVec3],
+        values: &mut [f64],
+        gradients: &mut [DVec3],
+    ) {
+        if !self.tilts[0].is_empty() {
+            self.values(kernel, points, values);
+            return self.gradients(kernel, points, gradients);
+        }
+        let tasks = values.par_chunks_mut(TASK).zip(gradients.par_chunks_mut(TASK)).zip(points.par_chunks(TASK));
+        with_kernel!(kernel, K => tasks.for_each(|((values, gradients), points)| {
+            Arch::new().dispatch(|| {
+                let blocks = values.chunks_mut(LANES).zip(gradients.chunks_mut(LANES)).zip(points.chunks(LANES));
+                for ((values, gradients), points) in blocks {
+                    let (value, [x, y, z]) = self.block_of_both::<K>(&spread(points));
+                    values.copy_from_slice(&value[..points.len()]);
+                    for (l, out) in gradients.iter_mut().enumerate() {
+                        *out = DVec3::new(x[l], y[l], z[l]);
+                    }
+                }
+            });
+        }));
+    }
+
+    /// In the same order as each alone, so that it gives the same bits. For centres without gradient weights.
+    #[inline(always)]
+    fn block_of_both<K: Radial>(&self, at: &Block) -> ([f64; LANES], Block) {
+        let [c, cx, cy, cz] = self.affine;
+        let mut value: [f64; LANES] = std::array::from_fn(|l| c + cx * at[0][l] + cy * at[1][l] + cz * at[2][l]);
+        let mut sum: Block = std::array::from_fn(|k| [self.affine[k + 1]; LANES]);
+        for (((&x, &y), &z), &w) in self.x.iter().zip(&self.y).zip(&self.z).zip(&self.weights) {
+            for l in 0..LANES {
+                let (dx, dy, dz) = (at[0][l] - x, at[1][l] - y, at[2][l] - z);
+                let r2 = dx * dx + dy * dy + dz * dz;
+                let r = r2.sqrt();
+                value[l] += w * K::value(r2, r);
+                let s = w * K::slope(r2, r);
+                sum[0][l] += s * dx;
+                sum[1][l] += s * dy;
+                sum[2][l] += s * dz;
+            }
+        }
+        (value, sum)
+    }
+
     #[inline(always)]
     fn block_values<K: Radial>(&self, at: &Block) -> [f64; LANES] {
         let [c, cx, cy, cz] = self.affine;

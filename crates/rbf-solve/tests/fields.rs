@@ -92,6 +92,24 @@ fn six_caps_of_a_sphere_rejoin_to_the_sphere() {
 }
 
 #[test]
+fn values_and_gradients_at_once_have_the_bits_of_each_alone() {
+    let mut constraints = bumpy(60);
+    for tilted in [false, true] {
+        if tilted {
+            for c in constraints.iter_mut().step_by(6) {
+                c.gradient = Some(c.point);
+            }
+        }
+        let field = fit(&constraints, Kernel::Triharmonic).unwrap();
+        let points: Vec<DVec3> = directions(41).into_iter().map(|d| 1.3 * d).collect();
+        let (mut values, mut gradients) = (vec![0.0; points.len()], vec![DVec3::ZERO; points.len()]);
+        field.values_and_gradients(&points, &mut values, &mut gradients);
+        assert!(points.iter().zip(&values).all(|(&p, &v)| field.value(p) == v));
+        assert!(points.iter().zip(&gradients).all(|(&p, &g)| field.gradient(p) == g));
+    }
+}
+
+#[test]
 fn gradients_are_those_of_the_values() {
     let mut constraints = bumpy(60);
     for kernel in [Kernel::Biharmonic, Kernel::Triharmonic] {

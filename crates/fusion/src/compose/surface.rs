@@ -19,7 +19,8 @@ const LAMBDA: f64 = 0.5;
 /// Edges of the surface around an opening, at least.
 const ROUND: f64 = 28.0;
 
-/// The surface between the openings, whose first vertices are theirs. `fineness` divides the cells.
+/// The surface between the openings, whose first vertices are theirs. `fineness` divides the cells; below 1 it enlarges them as
+/// far as the gaps between openings allow.
 pub(super) fn surface(
     openings: &[Opening],
     field: &Field,
@@ -30,7 +31,7 @@ pub(super) fn surface(
 ) -> Result<Transition, Error> {
     let rims: Vec<Rim> = openings.iter().map(|o| o.rim.clone()).collect();
     let how = lmc_tessellate::Params {
-        cell: cell_size(&rims, openings, params) / fineness,
+        cell: cell_size(&rims, openings, params, fineness),
         space: params.space,
         // Remeshing ends on the field anyway.
         steps: 0,
@@ -44,12 +45,24 @@ pub(super) fn surface(
     Ok(Transition { mesh, ..made })
 }
 
+/// Openings of more edges than this get cells larger than their edges, up to [`COARSEST`] times: the shape needs no finer
+/// ones, and remeshing restores the fineness.
+const ENOUGH: f64 = 96.0;
+const COARSEST: f64 = 3.0;
+
+/// How much larger than the mean edge cells may be at first.
+pub(super) fn coarseness(openings: &[Opening]) -> f64 {
+    let edges = openings.iter().map(|o| o.walk.len()).min().unwrap_or(0);
+    (edges as f64 / ENOUGH).clamp(1.0, COARSEST)
+}
+
 /// The wanted share of the mean edge, or less where openings are close or of few edges.
-fn cell_size(rims: &[Rim], openings: &[Opening], params: &Params) -> f64 {
+fn cell_size(rims: &[Rim], openings: &[Opening], params: &Params, fineness: f64) -> f64 {
     let (safe, edge) = (suggested_cell(rims), mean_edge(openings));
     let least = openings.iter().map(|o| o.perimeter() / ROUND).fold(edge, f64::min).max(0.25 * edge);
     let wanted = params.cell * least;
-    if safe < 0.799 * edge { wanted.min(safe) } else { wanted }
+    let usual = if safe < 0.799 * edge { wanted.min(safe) } else { wanted };
+    if fineness < 1.0 { (wanted / fineness).min(safe).max(usual) } else { usual / fineness }
 }
 
 /// Remeshes to edges as long as those of the nearest openings, or as asked, with vertices on the zero set.
@@ -63,31 +76,39 @@ fn even_out(
     let sizes = Sizes::new(openings, params.edge_length);
     let size = |p: DVec3| sizes.at(p);
     let reach = 0.5 * mean_edge(openings);
-    let project = |points: &mut [DVec3]| onto(field, points, reach);
     let edge = params.edge_length.unwrap_or_else(|| mean_edge(openings));
-    // The field is dear: all rounds but the last follow the tessellated surface.
-    let mut mesh = mesh;
-    for (rounds, projection) in [(ROUNDS - 1, Projection::Input), (1, Projection::Field(&project))] {
-        let how = remesh::Params { feature_angle: 180.0, rounds, lambda: LAMBDA, ..remesh::Params::new(edge) };
-        let Ok(connected) = Connected::new(mesh) else { return Err(Error::Closed) };
-        mesh = remesh::remesh(&connected, &Frozen::default(), Sizing::Field(&size), &how, projection, watch)?.mesh;
-    }
+    // The field is dear: all rounds follow the tessellated surface, which is near enough for a last step to find the field.
+    let how = remesh::Params { feature_angle: 180.0, rounds: ROUNDS, lambda: LAMBDA, ..remesh::Params::new(edge) };
+    let Ok(connected) = Connected::new(mesh) else { return Err(Error::Closed) };
+    let evened = remesh::remesh(&connected, &Frozen::default(), Sizing::Field(&size), &how, Projection::Input, watch)?;
+    let mut mesh = evened.mesh;
     let rims: usize = openings.iter().map(|o| o.vertices.len()).sum();
     onto(field, &mut mesh.positions[rims..], reach);
     Ok(mesh)
 }
 
-/// One Newton step of every point towards the zero set.
+/// Moves every point towards the zero set by Newton's steps: one, and another wherever the one was long beside the
+/// `reach` that no step exceeds.
 fn onto(field: &Field, points: &mut [DVec3], reach: f64) {
-    let mut values = vec![0.0; points.len()];
-    let mut gradients = vec![DVec3::ZERO; points.len()];
-    field.values(points, &mut values);
-    field.gradients(points, &mut gradients);
-    for (p, (v, g)) in points.iter_mut().zip(values.iter().zip(&gradients)) {
-        let step = -*v * *g / g.length_squared();
-        if step.is_finite() {
-            *p += step.clamp_length_max(reach);
+    const STEPS: usize = 3;
+    // What is left after a step falls with its square.
+    const LONG: f64 = 1e-3;
+    let mut far: Vec<usize> = (0..points.len()).collect();
+    for _ in 0..STEPS {
+        let at: Vec<DVec3> = far.iter().map(|&i| points[i]).collect();
+        let (mut values, mut gradients) = (vec![0.0; at.len()], vec![DVec3::ZERO; at.len()]);
+        field.values_and_gradients(&at, &mut values, &mut gradients);
+        let mut still = vec![];
+        for ((&i, v), g) in far.iter().zip(values).zip(gradients) {
+            let step = -v * g / g.length_squared();
+            if step.is_finite() {
+                points[i] += step.clamp_length_max(reach);
+                if step.length() > LONG * reach {
+                    still.push(i);
+                }
+            }
         }
+        far = still;
     }
 }
 
