@@ -27,7 +27,7 @@ use mesh_core::{Connected, TriMesh, Watch};
 use mesh_io::{Format, Model};
 use openings::{Opening, check_pose, mean_edge, openings};
 use rbf_solve::Field;
-use surface::{coarseness, split_chords, surface};
+use surface::{split_chords, surface};
 use weld::{Welded, check_pieces, name_crossing, part_edges, weld};
 
 /// How parts are composed.
@@ -163,9 +163,7 @@ fn fitted(
     let field = report.time("fit", || fit(meshes, openings, params, watch))?;
     report.figures.insert("constraints".into(), field.centres() as f64);
     report.residuals.insert("field".into(), field.residual());
-    let coarse = coarseness(openings);
-    let coarser = (coarse > 1.0).then_some(1.0 / coarse);
-    let mut attempts = coarser.into_iter().chain(FINENESS).peekable();
+    let mut attempts = FINENESS.into_iter().peekable();
     loop {
         let fineness = attempts.next().unwrap_or(1.0);
         match attempt(parts, meshes, openings, &field, params, fineness, report.clone(), watch) {

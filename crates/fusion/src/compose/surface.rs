@@ -19,8 +19,7 @@ const LAMBDA: f64 = 0.5;
 /// Edges of the surface around an opening, at least.
 const ROUND: f64 = 28.0;
 
-/// The surface between the openings, whose first vertices are theirs. `fineness` divides the cells; below 1 it enlarges them as
-/// far as the gaps between openings allow.
+/// The surface between the openings, whose first vertices are theirs. `fineness` divides the cells.
 pub(super) fn surface(
     openings: &[Opening],
     field: &Field,
@@ -31,7 +30,7 @@ pub(super) fn surface(
 ) -> Result<Transition, Error> {
     let rims: Vec<Rim> = openings.iter().map(|o| o.rim.clone()).collect();
     let how = lmc_tessellate::Params {
-        cell: cell_size(&rims, openings, params, fineness),
+        cell: cell_size(&rims, openings, params) / fineness,
         space: params.space,
         // Remeshing ends on the field anyway.
         steps: 0,
@@ -45,24 +44,12 @@ pub(super) fn surface(
     Ok(Transition { mesh, ..made })
 }
 
-/// Openings of more edges than this get cells larger than their edges, up to [`COARSEST`] times: the shape needs no finer
-/// ones, and remeshing restores the fineness.
-const ENOUGH: f64 = 96.0;
-const COARSEST: f64 = 3.0;
-
-/// How much larger than the mean edge cells may be at first.
-pub(super) fn coarseness(openings: &[Opening]) -> f64 {
-    let edges = openings.iter().map(|o| o.walk.len()).min().unwrap_or(0);
-    (edges as f64 / ENOUGH).clamp(1.0, COARSEST)
-}
-
 /// The wanted share of the mean edge, or less where openings are close or of few edges.
-fn cell_size(rims: &[Rim], openings: &[Opening], params: &Params, fineness: f64) -> f64 {
+fn cell_size(rims: &[Rim], openings: &[Opening], params: &Params) -> f64 {
     let (safe, edge) = (suggested_cell(rims), mean_edge(openings));
     let least = openings.iter().map(|o| o.perimeter() / ROUND).fold(edge, f64::min).max(0.25 * edge);
     let wanted = params.cell * least;
-    let usual = if safe < 0.799 * edge { wanted.min(safe) } else { wanted };
-    if fineness < 1.0 { (wanted / fineness).min(safe).max(usual) } else { usual / fineness }
+    if safe < 0.799 * edge { wanted.min(safe) } else { wanted }
 }
 
 /// Remeshes to edges as long as those of the nearest openings, or as asked, with vertices on the zero set.
