@@ -6,14 +6,23 @@ use glam::DVec3;
 use mesh_core::{TriMesh, Watch, validate};
 use mesh_io::{Format, Model};
 use mesh_query::TriBvh;
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::time::Instant;
 
 /// A result.
 pub struct Joined {
     pub mesh: TriMesh,
     pub warnings: Vec<String>,
+    /// The report's figures.
+    pub figures: BTreeMap<String, f64>,
     pub milliseconds: f64,
+}
+
+impl Joined {
+    /// A figure of the report; 0 if it has none of that name.
+    pub fn figure(&self, name: &str) -> f64 {
+        self.figures.get(name).copied().unwrap_or_default()
+    }
 }
 
 /// Why there is none.
@@ -72,7 +81,7 @@ pub fn join(parts: &[TriMesh], operation: Operation, radius: Option<f64>) -> Res
     let result = run(parts, operation, radius);
     let milliseconds = 1e3 * start.elapsed().as_secs_f64();
     match result {
-        Ok((mesh, warnings)) => Ok(Joined { mesh, warnings, milliseconds }),
+        Ok((mesh, warnings, figures)) => Ok(Joined { mesh, warnings, figures, milliseconds }),
         Err((reason, place)) => Err(Failure { reason, place, milliseconds }),
     }
 }
@@ -81,7 +90,7 @@ fn run(
     parts: &[TriMesh],
     operation: Operation,
     radius: Option<f64>,
-) -> Result<(TriMesh, Vec<String>), (String, Option<DVec3>)> {
+) -> Result<(TriMesh, Vec<String>, BTreeMap<String, f64>), (String, Option<DVec3>)> {
     let models: Vec<_> = parts.iter().cloned().map(Model::from).collect();
     let watch = Watch::default();
     let booleans = |operation: fusion::Operation| {

@@ -1,4 +1,4 @@
-//! Pairs of real models, joined and blended at three radii.
+//! Pairs of real models, joined and blended at four radii.
 
 use super::case::Operation;
 use super::join::{Failure, Joined, join};
@@ -13,7 +13,7 @@ use std::fs;
 use std::path::Path;
 
 /// Radii as shares of the joint box's diagonal.
-const RADII: [f64; 3] = [0.005, 0.01, 0.02];
+const RADII: [f64; 4] = [0.005, 0.01, 0.02, 0.04];
 /// With `--quick`, every so many pairs, at the middle radius.
 const QUICK: usize = 8;
 
@@ -112,15 +112,38 @@ fn table(rows: &[Row], radii: &[f64], checked: bool) -> Result<String, Fault> {
     );
     text +=
         if checked { "libigl's exact self-intersection test agrees on all of them unless noted.\n\n" } else { "\n" };
-    writeln!(text, "| radius | succeed | of |\n|---|---|---|")?;
+    writeln!(
+        text,
+        "| radius | succeed | of | by strips alone | by fields alone | by both | full radius throughout | median ms | 90% ms |\n|---|---|---|---|---|---|---|---|---|"
+    )?;
     for (share, done, all) in totals(rows, radii) {
-        writeln!(text, "| {}% | {done} ({:.0}%) | {all} |", 100.0 * share, 100.0 * done as f64 / all.max(1) as f64)?;
+        let good: Vec<&Joined> =
+            rows.iter().filter(|r| r.share == share).filter_map(|r| r.outcome.as_ref().ok()).collect();
+        let count = |test: &dyn Fn(&Joined) -> bool| good.iter().filter(|j| test(j)).count();
+        let [strips, fields] = ["strips", "fields"].map(|name| move |j: &Joined| j.figure(name) > 0.0);
+        let mut times: Vec<f64> = good.iter().map(|j| j.milliseconds).collect();
+        times.sort_by(f64::total_cmp);
+        let quantile = |q: f64| times.get(((times.len().max(1) - 1) as f64 * q) as usize).copied().unwrap_or_default();
+        writeln!(
+            text,
+            "| {}% | {done} ({:.0}%) | {all} | {} | {} | {} | {} | {:.0} | {:.0} |",
+            100.0 * share,
+            100.0 * done as f64 / all.max(1) as f64,
+            count(&|j| strips(j) && !fields(j)),
+            count(&|j| fields(j) && !strips(j)),
+            count(&|j| fields(j) && strips(j)),
+            count(&|j| j.figure("full_share") >= 0.999),
+            quantile(0.5),
+            quantile(0.9),
+        )?;
     }
-    writeln!(text, "\n| pair | radius | ms | outcome |\n|---|---|---|---|")?;
+    writeln!(
+        text,
+        "\nThe outcome names what made the blend, and where the ball had to be made smaller: at how many places, down to what share of the radius, and the share of the seam that keeps the full one.\n\n| pair | radius | ms | outcome |\n|---|---|---|---|"
+    )?;
     for row in rows {
         let (time, words) = match &row.outcome {
-            Ok(joined) if joined.warnings.is_empty() => (joined.milliseconds, "done".to_string()),
-            Ok(joined) => (joined.milliseconds, format!("done; {}", joined.warnings.join("; "))),
+            Ok(joined) => (joined.milliseconds, account(joined)),
             Err(failure) => (failure.milliseconds, failure.reason.clone()),
         };
         let faults: Vec<_> = row.faults.iter().map(|f| format!("; **{f}**")).collect();
@@ -128,4 +151,27 @@ fn table(rows: &[Row], radii: &[f64], checked: bool) -> Result<String, Fault> {
         writeln!(text, "| {} | {}% | {time:.0} | {}{faults} |", row.name, 100.0 * row.share, words.replace('|', "/"))?;
     }
     Ok(text)
+}
+
+/// What made the blend, and what it took.
+fn account(joined: &Joined) -> String {
+    let many = |n: f64, what: &str| match n {
+        0.0 => None,
+        1.0 => Some(format!("1 {what}")),
+        _ => Some(format!("{n} {what}s")),
+    };
+    let made: Vec<String> = [("strips", "strip"), ("fields", "field")]
+        .into_iter()
+        .filter_map(|(figure, word)| many(joined.figure(figure), word))
+        .collect();
+    let mut words = if made.is_empty() { "done".to_string() } else { made.join(" and ") };
+    if let Some(places) = many(joined.figure("shrunk_places"), "place") {
+        let least = joined.figure("smallest_radius") / joined.figure("radius");
+        words +=
+            &format!("; smaller at {places}, down to {least:.2}, {:.0}% full", 100.0 * joined.figure("full_share"));
+    }
+    for warning in joined.warnings.iter().filter(|w| !w.contains("does not fit near")) {
+        words += &format!("; {warning}");
+    }
+    words
 }

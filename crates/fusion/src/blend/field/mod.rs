@@ -46,9 +46,9 @@ use tri_intersect::{EmbedError, EmbedParams, Embedded, embed};
 /// How often the ball is made smaller where the result meets itself.
 const ROUNDS: usize = 6;
 
-/// Whether all curves can be blended as a field.
+/// Whether a field may take the place of a sweep: it can serve all curves, and the ball may give way.
 pub(crate) fn serves(curves: &[BlendCurve], params: &Params) -> bool {
-    params.surface != super::Surface::Stitch
+    params.overlap == Overlap::Shrink
         && is_arc(params)
         && params.radii == Radii::default()
         && curves.iter().all(|c| c.closed)
