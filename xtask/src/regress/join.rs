@@ -103,6 +103,6 @@ fn run(
         Operation::Intersection => booleans(fusion::Operation::Intersection),
         Operation::Compose => compose::compose(&models, &compose::Params::new(Format::Ply), &watch),
     }
-    .map(|outcome| (outcome.model.mesh, [outcome.report.warnings, outcome.report.notes].concat()))
+    .map(|o| (o.model.mesh, [o.report.warnings, o.report.notes].concat(), o.report.figures))
     .map_err(|e| (e.to_string(), e.place()))
 }
