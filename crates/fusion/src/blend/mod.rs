@@ -86,7 +86,7 @@ pub struct Params {
 /// How the surface is put in.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Surface {
-    /// Swept as [`Surface::Stitch`]; where that fails, as [`Surface::Field`], unless [`Overlap::Error`] is asked for.
+    /// Swept as [`Surface::Stitch`]; where that fails, as [`Surface::Field`].
     #[default]
     Auto,
     /// Swept, and sewn between exact cuts along the linkages.
