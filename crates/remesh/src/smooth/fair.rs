@@ -93,7 +93,7 @@ pub fn fair<M: Adjacency + Positions + Sync>(
             }
         });
         factor = Some(
-            rows.solve(&mut task.moved.points, &right, factor)
+            rows.solve(&mut task.moved.points, &right, 2, factor)
                 .map_err(|v| Error::IllConditioned { at: mesh.position(VertexId(v)) })?,
         );
     }

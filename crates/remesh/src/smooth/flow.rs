@@ -64,7 +64,7 @@ pub fn curvature_flow<M: Adjacency + Positions + Sync>(
         let points = &mut task.moved.points;
         let right: Vec<DVec3> = task.free.iter().map(|&v| laplacian.areas[v as usize] * points[v as usize]).collect();
         factor = Some(
-            rows.solve(points, &right, factor)
+            rows.solve(points, &right, 1, factor)
                 .map_err(|v| Error::IllConditioned { at: mesh.position(mesh_core::VertexId(v)) })?,
         );
     }

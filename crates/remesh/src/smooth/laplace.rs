@@ -135,11 +135,18 @@ impl<'a> Rows<'a> {
         (0..self.free.len()).into_par_iter().with_min_len(CHUNK).map(at).collect()
     }
 
-    /// Moves the free vertices so that the operator gives `right` there, the others staying, and returns the factor.
+    /// Moves the free vertices so that the operator gives `right` there, the others staying, and returns the factor. Of the
+    /// `steps`, those after the first mend what rounding left.
     ///
     /// # Errors
     /// A free vertex at which the operator is not positive definite.
-    pub fn solve(&self, points: &mut [DVec3], right: &[DVec3], like: Option<Cholesky>) -> Result<Cholesky, u32> {
+    pub fn solve(
+        &self,
+        points: &mut [DVec3],
+        right: &[DVec3],
+        steps: usize,
+        like: Option<Cholesky>,
+    ) -> Result<Cholesky, u32> {
         let mut index = vec![u32::MAX; points.len()];
         for (i, &v) in self.free.iter().enumerate() {
             index[v as usize] = i as u32;
@@ -158,8 +165,7 @@ impl<'a> Rows<'a> {
         let factor = Cholesky::new(&lower, like).map_err(|i| self.free[i.min(self.free.len() - 1)])?;
         let n = self.free.len();
         let mut x = vec![0.0; 3 * n];
-        // Steps towards the solution: the second mends what rounding left of the first.
-        for _ in 0..2 {
+        for _ in 0..steps {
             for (i, r) in self.residual(points, right).iter().enumerate() {
                 [x[i], x[n + i], x[2 * n + i]] = r.to_array();
             }
