@@ -59,4 +59,4 @@ pub use relief::{BaseParams, Detail, Frame, Relief};
 pub use roughness::{Roughness, roughness};
 pub use structured::{Banded, Ribbon, fill_structured};
 pub use transfer::{Exemplar, FanLength, Params, Transferred, Warning, transfer};
-pub use unstructured::{Choice, Filled, Search, fill_unstructured};
+pub use unstructured::{Choice, Filled, Search, fill_unstructured, similarity};

@@ -111,6 +111,11 @@ impl Library {
         }
     }
 
+    /// The distance of a query to one fan, least over the turns.
+    pub fn nearest_turn(&self, q: &Query, entry: u32) -> f32 {
+        (0..BRANCHES as u8).fold(Match::NONE, |best, turn| self.consider(q, best, entry, turn)).distance
+    }
+
     /// The most similar fan, found by looking at all. O(n), parallel.
     pub fn exhaustive(&self, q: &Query) -> Match {
         let entries = (0..self.fans.len() as u32).into_par_iter().with_min_len(1024);

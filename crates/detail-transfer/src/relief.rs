@@ -250,11 +250,13 @@ impl Relief {
         d.bend + d.offset / (self.anchor * self.anchor)
     }
 
-    /// The longest edge of the region's base.
+    /// The longest edge of the region's base, the longest hundredth left aside: a needle of a cut says nothing about the rest.
     pub(crate) fn longest_edge(&self) -> f64 {
         let inside = self.base.face_ids().filter(|f| self.inside[f.index()]);
-        let longest = |p: [DVec3; 3]| (0..3).map(|k| p[k].distance(p[(k + 1) % 3])).fold(0.0, f64::max);
-        inside.map(|f| longest(self.base.mesh().triangle(f))).fold(0.0, f64::max)
+        let sides = |p: [DVec3; 3]| [0, 1, 2].map(|k| p[k].distance(p[(k + 1) % 3]));
+        let mut lengths: Vec<f64> = inside.flat_map(|f| sides(self.base.mesh().triangle(f))).collect();
+        lengths.sort_unstable_by(f64::total_cmp);
+        lengths.get(lengths.len() * 99 / 100).copied().unwrap_or_default()
     }
 
     /// Vertices of the region's faces that are neither on the rim nor `excluded`.

@@ -20,10 +20,11 @@ pub struct Exemplar<'a> {
 /// How long fans are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum FanLength {
-    /// A hundredth of the diagonal of the target mesh's box, as in all examples of [Lin2008] (§5.1), but no less than 1.5 longest edges.
+    /// A hundredth of the diagonal of the target mesh's box, as in all examples of [Lin2008] (§5.1), but no less than [`FanLength::Edges`]:
+    /// shorter fans hardly leave the faces of the vertex itself, of which nothing is known.
     #[default]
     Diagonal,
-    /// One and a half longest edges of the target and source regions' bases ([Lin2008] §4.2).
+    /// One and a half longest edges of the target's base ([Lin2008] §4.2), the longest hundredth left aside.
     Edges,
     /// In model units.
     Units(f64),
@@ -32,7 +33,7 @@ pub enum FanLength {
 /// How detail is transferred.
 #[derive(Clone, Debug, Default)]
 pub struct Params {
-    /// What is shorter counts as detail, in model units; see [`BaseParams::wavelength`]. `None`: eight mean edges of the first source.
+    /// What is shorter counts as detail, in model units; see [`BaseParams::wavelength`]. `None`: twelve mean edges of the first source.
     pub wavelength: Option<f64>,
     /// Length of geodesic fans.
     pub fan: FanLength,
@@ -139,7 +140,7 @@ pub fn transfer(
             warnings.push(Warning::Coarse { source_index, target: own, source_edge });
         }
     }
-    let longest = reliefs.iter().map(Relief::longest_edge).fold(goal.longest_edge(), f64::max);
+    let longest = goal.longest_edge();
     let fan = match params.fan {
         FanLength::Units(length) => length,
         FanLength::Edges => 1.5 * longest,
@@ -190,7 +191,7 @@ fn known_details(relief: &Relief, free: &[bool]) -> Vec<Option<Detail>> {
 }
 
 /// Mean edges in the default wavelength.
-const EDGES: f64 = 8.0;
+const EDGES: f64 = 12.0;
 /// The default length of fans, as a share of the diagonal ([Lin2008] §5.1).
 const FAN_SHARE: f64 = 0.01;
 

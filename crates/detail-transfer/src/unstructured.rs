@@ -157,6 +157,26 @@ fn turned(detail: &Detail, turn: u8) -> Detail {
     Detail { bend: turn(detail.bend), offset: turn(detail.offset) }
 }
 
+/// How like the surroundings of `vertex` each vertex of the patch looks: root mean square difference of the fans, least over eight rotations, as
+/// a share of the patch's root mean square signal. Infinite where a fan leaves the patch. O(n), parallel.
+///
+/// # Errors
+/// [`Error::Length`].
+pub fn similarity(relief: &Relief, vertex: VertexId, length: f64) -> Result<Vec<f64>, Error> {
+    if !(length > 0.0 && length.is_finite()) {
+        return Err(Error::Length { name: "fan length", value: length });
+    }
+    let mut out = vec![f64::INFINITY; relief.vertices().len()];
+    let Ok(found) = exemplars(&[(relief, vec![])], length) else { return Ok(out) };
+    let Some(&own) = found.entries[0].get(vertex.index()).filter(|&&e| e != NONE) else { return Ok(out) };
+    let query = Query { values: found.fans[own as usize], known: (0..SAMPLES as u8).collect() };
+    let library = Library::new(&found.fans);
+    for (entry, &(_, v)) in (0..).zip(&found.names) {
+        out[v as usize] = (f64::from(library.nearest_turn(&query, entry)) / SAMPLES as f64).sqrt();
+    }
+    Ok(out)
+}
+
 fn exemplars(sources: &[(&Relief, Vec<bool>)], length: f64) -> Result<Exemplars, Error> {
     let (mut signals, mut candidates) = (vec![], vec![]);
     let (mut squares, mut count) = (0.0, 0usize);

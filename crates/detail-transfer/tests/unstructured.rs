@@ -36,7 +36,7 @@ fn time_ten_thousand() {
     let mesh = noisy(160, 0.01, 0.1);
     let middle = |f| mesh.mesh().triangle(f).iter().sum::<DVec3>() / 3.0;
     let target: FaceMap<bool> = mesh.face_ids().map(|f| middle(f).x < -0.2).collect::<Vec<_>>().into();
-    let source: FaceMap<bool> = mesh.face_ids().map(|f| middle(f).x > -0.1).collect::<Vec<_>>().into();
+    let source: FaceMap<bool> = mesh.face_ids().map(|f| middle(f).x > 0.22).collect::<Vec<_>>().into();
     let start = Instant::now();
     let params = BaseParams::new(0.2);
     let [a, b] = [&target, &source].map(|r| Relief::encode(&mesh, r, &params, &Watch::default()).unwrap());
