@@ -41,6 +41,27 @@ pub(crate) fn blend(
             }
         }
     }
+    loop {
+        let failure = match add_fields(&mut so_far, &by_field, params, watch) {
+            Ok(()) => return Ok(so_far.blended),
+            Err(failure) => failure,
+        };
+        let Some(trouble) = refusal.take_if(|_| !matches!(failure, Error::Cancelled(_))) else { return Err(failure) };
+        if !by_field.contains(&false) {
+            return explained(mesh, curves, params, trouble, watch);
+        }
+        // Some of the curves alone may not tell two sides apart.
+        by_field.fill(true);
+        let told = so_far.blended.fallbacks;
+        so_far = SoFar::new(mesh, curves);
+        so_far.blended.fallbacks = told;
+        refusal = Some(trouble);
+    }
+}
+
+/// Blends the marked curves as fields, one for valleys and one for ridges.
+fn add_fields(so_far: &mut SoFar<'_>, by_field: &[bool], params: &Params, watch: &Watch) -> Result<(), Error> {
+    let (mesh, curves) = (so_far.input, so_far.all);
     for convexity in [Convexity::Concave, Convexity::Convex] {
         let own = |i: usize| by_field[i] && curves[i].convexity(mesh).unwrap_or(Convexity::Concave) == convexity;
         let chosen = so_far.curves(own)?;
@@ -51,16 +72,9 @@ pub(crate) fn blend(
             Some(changed) => field::blend(changed, &chosen, convexity, params, watch),
             None => field::blend(mesh, &chosen, convexity, params, watch),
         };
-        match (made, refusal.take()) {
-            (Ok(made), first) => {
-                so_far.add(made, own)?;
-                refusal = first;
-            }
-            (Err(e @ Error::Cancelled(_)), _) | (Err(e), None) => return Err(e),
-            (Err(_), Some(refusal)) => return explained(mesh, curves, params, refusal, watch),
-        }
+        so_far.add(made?, own)?;
     }
-    Ok(so_far.blended)
+    Ok(())
 }
 
 /// Marks the curves around the places where sweeping fails; all of them if no place is near one. Returns for each such
