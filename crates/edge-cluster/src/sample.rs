@@ -7,9 +7,12 @@ const LOOKS: usize = 24;
 /// Curvature between the looks may be greater.
 const SAFETY: f64 = 0.8;
 
+/// A curve over [0, 1], at many places at once.
+pub type Curve<'a> = &'a dyn Fn(&[f64]) -> Vec<DVec3>;
+
 /// Shares in [0, 1], from 0 to 1, at which to cut a curve so that its chords stay within `tolerance`. The density of
-/// cuts is the greatest that any of `curves` asks for at each place; nowhere less than a quarter of the mean. Curves take many places at once, as patches do.
-pub fn shares(curves: &[&dyn Fn(&[f64]) -> Vec<DVec3>], tolerance: f64, least: usize) -> Vec<f64> {
+/// cuts is the greatest that any of `curves` asks for at each place; nowhere less than a quarter of the mean.
+pub fn shares(curves: &[Curve<'_>], tolerance: f64, least: usize) -> Vec<f64> {
     let step = 1.0 / LOOKS as f64;
     let looks: [f64; 2 * LOOKS + 1] = std::array::from_fn(|i| 0.5 * step * i as f64);
     let mut density = [0.0f64; LOOKS];

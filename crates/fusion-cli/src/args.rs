@@ -146,6 +146,9 @@ pub struct Features {
     /// Print JSON instead of a table
     #[arg(long)]
     pub json: bool,
+    /// Leave out the largest radius of each curve, which takes the longest
+    #[arg(long)]
+    pub no_radii: bool,
     #[command(flatten)]
     pub source: Source,
 }
@@ -198,6 +201,10 @@ pub struct Blend {
     /// Blend only the feature curve nearest this point; may be given more than once
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub near: Vec<DVec3>,
+    /// Blend the curves in this file, as `features -o` writes them: points at vertices, or far apart, to be joined by the
+    /// cheapest way along sharp edges
+    #[arg(long, value_name = "CURVES.json")]
+    pub curves: Option<PathBuf>,
     #[command(flatten)]
     pub rolling: Rolling,
 }

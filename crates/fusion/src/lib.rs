@@ -25,6 +25,7 @@
 //! | `repair.rs` | welding, orientation, taking apart |
 //! | `info.rs` | counts, measures and defects of one mesh |
 //! | `features.rs` | feature curves by dihedral angle |
+//! | `picks.rs` | curves through picked points |
 //! | `attributes.rs` | attributes carried from inputs to the result |
 //! | `profile_file.rs` | cross-sections read from files |
 //! | `palette.rs` | which colour shows what a face comes from |
@@ -42,6 +43,7 @@ pub mod join;
 mod origins_json;
 mod outcome;
 mod palette;
+mod picks;
 mod profile_file;
 pub mod recipe;
 mod region;
@@ -60,6 +62,7 @@ pub use mesh_core;
 pub use origins_json::origins_to_json;
 pub use outcome::Outcome;
 pub use palette::palette_index;
+pub use picks::{Picked, picked_from_text};
 pub use profile_file::{ProfileFileError, profile_from_text};
 pub use profile_nurbs::Profile;
 pub use recipe::Recipe;

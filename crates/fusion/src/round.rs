@@ -1,12 +1,14 @@
 //! Rounds the feature curves of one mesh.
 
 use crate::blend::{self, Limit};
-use crate::features::{self, Convexity, feature_curves, nearest_curve};
+use crate::features::{self, Convexity, FeatureCurve, feature_curves, nearest_curve};
 use crate::outcome::{Outcome, account, finish, surviving};
+use crate::picks::{self, Picked};
 use crate::{Counts, Error, Report};
 use glam::DVec3;
 use mesh_core::{Adjacency, Connected, Faces, HalfedgeId, TriMesh, VertexId, Watch};
 use mesh_io::{Format, Model};
+use rayon::prelude::*;
 use spine::BlendCurve;
 use std::collections::BTreeMap;
 
@@ -15,8 +17,10 @@ use std::collections::BTreeMap;
 pub struct Params {
     /// What a feature curve is.
     pub features: features::Params,
-    /// Points in model units, each naming the feature curve nearest to it. Empty means all curves.
+    /// Points in model units, each naming the feature curve nearest to it.
     pub near: Vec<DVec3>,
+    /// Curves through picked points, beside those near places; feature curves count only where neither is given.
+    pub picked: Vec<Picked>,
     /// The ball.
     pub blend: blend::Params,
     /// The format the result is meant for, whose rounding it must survive.
@@ -42,6 +46,33 @@ pub fn max_radius(part: &Model, params: &Params, watch: &Watch) -> Result<Limit,
     Ok(blend::max_radius(&mesh, &curves, &params.blend, watch)?)
 }
 
+/// The same for each of `curves` alone; `None` where no radius works, or the curve has more than [`LONGEST`] edges.
+///
+/// # Errors
+/// [`Error::Cancelled`].
+pub fn max_radius_of_each(
+    mesh: &Connected<TriMesh>,
+    curves: &[FeatureCurve],
+    watch: &Watch,
+) -> Result<Vec<Option<Limit>>, Error> {
+    let limit = |curve: &FeatureCurve| {
+        watch.step("radii", 0.0)?;
+        if curve.halfedges.len() > LONGEST {
+            return Ok(None);
+        }
+        let chain = BlendCurve { halfedges: curve.halfedges.clone(), closed: curve.closed };
+        match blend::max_radius(mesh, &[chain], &blend::Params::new(1.0), watch) {
+            Ok(limit) => Ok(Some(limit)),
+            Err(blend::Error::Cancelled(c)) => Err(c.into()),
+            Err(_) => Ok(None),
+        }
+    };
+    curves.par_iter().map(limit).collect()
+}
+
+/// A curve of more edges is left out of a list of radii, which is to be made in seconds; ask for it alone.
+pub const LONGEST: usize = 1000;
+
 fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch) -> Result<Outcome, Error> {
     let mut report = Report::new("blend", vec![Counts::of("", &part.mesh)]);
     let mesh = report
@@ -55,20 +86,29 @@ fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch)
 }
 
 fn choose(mesh: &Connected<TriMesh>, params: &Params) -> Result<Vec<BlendCurve>, Error> {
+    let picked = picks::trace(mesh, &params.picked)?;
     let all = feature_curves(mesh, &params.features);
-    if all.is_empty() {
+    if all.is_empty() && picked.is_empty() {
         let angle = params.features.angle;
         return Err(Error::NoCurve(format!("no edge turns by {angle} degrees or more; lower --angle"), None));
     }
     let mut chosen: Vec<usize> = params.near.iter().filter_map(|&p| Some(nearest_curve(mesh, &all, p)?.0)).collect();
-    if params.near.is_empty() {
+    if params.near.is_empty() && picked.is_empty() {
         chosen = (0..all.len()).collect();
     }
     chosen.sort_unstable();
     chosen.dedup();
     let curve =
         |id: usize| (all[id].convexity, BlendCurve { halfedges: all[id].halfedges.clone(), closed: all[id].closed });
-    Ok(joined(mesh, chosen.into_iter().map(curve).collect()))
+    let mut curves: Vec<_> = chosen.into_iter().map(curve).collect();
+    for curve in picked {
+        let convexity = match curve.convexity(mesh).map_err(blend::Error::from)? {
+            spine::Convexity::Convex => Convexity::Convex,
+            spine::Convexity::Concave => Convexity::Concave,
+        };
+        curves.push((convexity, curve));
+    }
+    Ok(joined(mesh, curves))
 }
 
 /// Curves of one convexity joined where just two of those chosen meet: nothing else sets them apart there.

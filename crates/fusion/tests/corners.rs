@@ -66,6 +66,7 @@ fn edges_that_meet_in_pairs_are_one_curve() {
     let cube = Model::from(shapes::cuboid(DVec3::ONE));
     let params = round::Params {
         features: features::Params::default(),
+        picked: vec![],
         near: [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y].map(|side| 0.5 * (side + DVec3::Z)).to_vec(),
         blend: Params { overlap: Overlap::Error, ..Params::new(0.1) },
         format: Format::Ply,

@@ -1,6 +1,6 @@
 //! Radii that vary along an edge, and from one side of it to the other, against the surfaces known for a cube.
 
-use fusion::blend::{Blended, Error, Overlap, Params, Radii, blend};
+use fusion::blend::{Blended, Error, Overlap, Params, Radii, blend, max_radius};
 use fusion::features::{self, feature_curves, nearest_curve};
 use glam::DVec3;
 use mesh_core::{Connected, Faces, Positions, TriMesh, VertexOrigin, Watch, shapes, volume};
@@ -89,4 +89,17 @@ fn corners_have_one_radius() {
     let params = Params { radii, ..Params::new(radius) };
     let refusal = blend(&mesh, &edges(&mesh), &params, &Watch::default());
     assert!(matches!(refusal, Err(Error::TwoRadiiMeet(at)) if at.abs() == DVec3::splat(0.5)), "{refusal:?}");
+}
+
+/// Alone, an edge of a cube stops in the faces at its ends.
+#[test]
+fn the_largest_radius_of_one_edge_is_right() {
+    let mesh = Connected::new(shapes::cuboid(DVec3::ONE)).unwrap();
+    let curves = &edges(&mesh)[..1];
+    let limit = max_radius(&mesh, curves, &Params::new(1.0), &Watch::default()).unwrap();
+    let fits = |radius| {
+        let params = Params { overlap: Overlap::Error, ..Params::new(radius) };
+        blend(&mesh, curves, &params, &Watch::default()).is_ok()
+    };
+    assert!(limit.radius > 0.45 && fits(0.99 * limit.radius) && !fits(1.02 * limit.radius), "{limit:?}");
 }

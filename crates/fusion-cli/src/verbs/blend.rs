@@ -4,7 +4,7 @@ use crate::args::{Blend as Args, Target};
 use crate::failure::Failure;
 use crate::output::print;
 use crate::session::{Destination, Session, counts, joint_diagonal};
-use fusion::{blend, features, round};
+use fusion::{Picked, blend, features, picked_from_text, round};
 use mesh_io::Format;
 use serde_json::json;
 
@@ -23,6 +23,7 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     let params = round::Params {
         features: features::Params { angle: args.angle, ..features::Params::default() },
         near: args.near.clone(),
+        picked: picked(args)?,
         blend: args.rolling.with_radius(radius, joint_diagonal(models))?,
         format: destination.format,
     };
@@ -33,12 +34,20 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
 }
 
+fn picked(args: &Args) -> Result<Vec<Picked>, Failure> {
+    let Some(path) = &args.curves else { return Ok(vec![]) };
+    let fault = |e: &dyn std::fmt::Display| Failure::unreadable(format!("{}: {e}", path.display()));
+    let text = std::fs::read_to_string(path).map_err(|e| fault(&e))?;
+    picked_from_text(&text).map_err(|e| fault(&e))
+}
+
 /// Prints the largest radius that fits.
 fn limit(session: &Session, args: &Args) -> Result<(), Failure> {
     let model = session.read(&args.input, &args.source)?;
     let params = round::Params {
         features: features::Params { angle: args.angle, ..features::Params::default() },
         near: args.near.clone(),
+        picked: picked(args)?,
         blend: blend::Params::new(1.0),
         format: Format::Obj,
     };

@@ -5,8 +5,10 @@ use crate::failure::Failure;
 use crate::output::{check_writable, print};
 use crate::session::{Session, counts};
 use fusion::Report;
+use fusion::blend::Limit;
 use fusion::features::{Convexity, FeatureCurve, Params, feature_curves};
 use fusion::mesh_core::{Connected, Faces, Positions, TriMesh};
+use fusion::round::max_radius_of_each;
 use glam::DVec3;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -21,8 +23,20 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     let mesh = report.time("connect", || Connected::new(model.mesh)).map_err(Failure::impossible)?;
     let params = Params { angle: args.angle, ..Params::default() };
     let curves = report.time("features", || feature_curves(&mesh, &params));
+    let limits = if args.no_radii {
+        vec![None; curves.len()]
+    } else {
+        report
+            .time("radii", || max_radius_of_each(&mesh, &curves, session.watch()))
+            .map_err(|e| Failure::of(&e, e.to_string()))?
+    };
     let json = || {
-        let list: Vec<_> = curves.iter().enumerate().map(|(id, c)| to_json(&mesh, id, c)).collect();
+        let list: Vec<_> = curves
+            .iter()
+            .zip(&limits)
+            .enumerate()
+            .map(|(id, (c, limit))| to_json(&mesh, id, c, limit.as_ref()))
+            .collect();
         format!("{:#}\n", json!({ "version": 1, "angle": args.angle, "curves": list }))
     };
     let files = args.output.iter().map(|path| (path.clone(), json().into_bytes())).collect();
@@ -30,19 +44,20 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     match (args.json, &args.output) {
         (true, _) => print(&json()),
         (false, Some(_)) => Ok(()),
-        (false, None) => print(&table(&mesh, &curves)),
+        (false, None) => print(&table(&mesh, &curves, &limits)),
     }
 }
 
-fn table(mesh: &Connected<TriMesh>, curves: &[FeatureCurve]) -> String {
-    let mut text = String::from("  id  edges        length  turn (degrees)  kind             from\n");
-    for (id, curve) in curves.iter().enumerate() {
+fn table(mesh: &Connected<TriMesh>, curves: &[FeatureCurve], limits: &[Option<Limit>]) -> String {
+    let mut text = String::from("  id  edges        length  turn (degrees)  kind             largest radius  from\n");
+    for (id, (curve, limit)) in curves.iter().zip(limits).enumerate() {
+        let radius = limit.as_ref().map_or("-".into(), |l| format!("{:.6}", l.radius));
         let kind = format!("{}, {}", convexity(curve), if curve.closed { "closed" } else { "open" });
         let start = curve.halfedges.first().map_or(DVec3::ZERO, |&h| mesh.position(mesh.tail(h)));
         let turn = format!("{:.1} to {:.1}", curve.angles[0], curve.angles[1]);
         let _ = writeln!(
             text,
-            "{id:>4} {:>6} {:>13.6} {turn:>15}  {kind:<15}  {},{},{}",
+            "{id:>4} {:>6} {:>13.6} {turn:>15}  {kind:<15}  {radius:>14}  {},{},{}",
             curve.halfedges.len(),
             curve.length,
             start.x,
@@ -53,7 +68,7 @@ fn table(mesh: &Connected<TriMesh>, curves: &[FeatureCurve]) -> String {
     text
 }
 
-fn to_json(mesh: &Connected<TriMesh>, id: usize, curve: &FeatureCurve) -> Value {
+fn to_json(mesh: &Connected<TriMesh>, id: usize, curve: &FeatureCurve, limit: Option<&Limit>) -> Value {
     let vertices = curve.vertices(mesh);
     let points: Vec<_> = vertices.iter().map(|&v| mesh.position(v).to_array()).collect();
     let mut ends: Vec<[f64; 3]> = vec![];
@@ -67,6 +82,9 @@ fn to_json(mesh: &Connected<TriMesh>, id: usize, curve: &FeatureCurve) -> Value 
         "closed": curve.closed,
         "angles": curve.angles,
         "ends": ends,
+        "max_radius": limit.map(|l| l.radius),
+        "limited_by": limit.map(|l| l.what),
+        "limited_at": limit.and_then(|l| l.at).map(|p| p.to_array()),
         "vertices": vertices.iter().map(|v| v.0).collect::<Vec<_>>(),
         "points": points,
     })

@@ -2,7 +2,7 @@
 
 use super::{Error, Overlap, Params, ROUNDS, Trouble, attempt};
 use glam::DVec3;
-use mesh_core::{Bounds, Connected, TriMesh, Watch};
+use mesh_core::{Bounds, Connected, Faces, HalfedgeId, Positions, TriMesh, Watch};
 use spine::BlendCurve;
 
 /// How large a ball may be, and why no larger.
@@ -35,7 +35,9 @@ pub fn max_radius(
     params: &Params,
     watch: &Watch,
 ) -> Result<Limit, Error> {
-    let bounds = curves.iter().flat_map(|c| c.points(mesh)).fold(Bounds::EMPTY, |b, p| b.union(Bounds::of([p; 3])));
+    let ends = |h: &HalfedgeId| [mesh.position(mesh.tail(*h)), mesh.position(mesh.head(*h))];
+    let points = curves.iter().flat_map(|c| &c.halfedges).flat_map(ends);
+    let bounds = points.fold(Bounds::EMPTY, |b, p| b.union(Bounds::of([p; 3])));
     let diagonal = bounds.max.distance(bounds.min);
     let fits = |radius: f64| {
         let params = Params { radius, overlap: Overlap::Error, ..params.clone() };

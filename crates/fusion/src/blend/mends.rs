@@ -8,6 +8,8 @@ use spine::{Dip, RadiusField, Rail, Softening};
 pub(super) struct Mends {
     /// The full radius, in model units.
     radius: f64,
+    /// The field of each curve, without dips.
+    fields: Vec<RadiusField>,
     dips: Vec<Dip>,
     pub softenings: Vec<Softening>,
     /// Places and how often each has been mended.
@@ -17,8 +19,8 @@ pub(super) struct Mends {
 }
 
 impl Mends {
-    pub fn new(radius: f64) -> Self {
-        Self { radius, dips: Vec::new(), softenings: Vec::new(), spots: Vec::new(), fresh: Vec::new() }
+    pub fn new(radius: f64, fields: Vec<RadiusField>) -> Self {
+        Self { radius, fields, dips: Vec::new(), softenings: Vec::new(), spots: Vec::new(), fresh: Vec::new() }
     }
 
     /// Mends each place: the first time by smoothing the linkages more, then by a smaller ball. False when a ball a
@@ -57,23 +59,22 @@ impl Mends {
         })
     }
 
-    /// The field with all dips made so far.
-    pub fn applied_to(&self, field: &RadiusField) -> RadiusField {
-        RadiusField { dips: self.dips.clone(), ..field.clone() }
+    /// The field of a curve with all dips made so far.
+    pub fn field(&self, curve: usize) -> RadiusField {
+        RadiusField { dips: self.dips.clone(), ..self.fields[curve].clone() }
     }
 
-    /// `fields` are those of the rails, without dips.
-    pub fn account_for(&self, rails: &[Option<Rail>], fields: &[RadiusField], blended: &mut Blended) {
+    pub fn account_for(&self, rails: &[Option<Rail>], blended: &mut Blended) {
         let shrunk = |dip: &Dip| {
             let distance = |rail: &Option<Rail>| {
                 rail.iter().flat_map(|r| &r.samples).map(|s| s.center.distance(dip.at)).fold(f64::INFINITY, f64::min)
             };
-            let nearest = rails.iter().map(distance).zip(fields).min_by(|a, b| a.0.total_cmp(&b.0));
-            (dip.at, nearest.map_or(self.radius, |(_, field)| self.applied_to(field).at(dip.at).0))
+            let nearest = rails.iter().map(distance).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+            (dip.at, nearest.map_or(self.radius, |(curve, _)| self.field(curve).at(dip.at).0))
         };
         blended.shrunk = self.dips.iter().map(shrunk).collect();
         let (mut full, mut total) = (0.0, 0.0);
-        for (rail, field) in rails.iter().zip(fields) {
+        for (rail, field) in rails.iter().zip(&self.fields) {
             let Some(rail) = rail else { continue };
             let next = rail.samples.iter().skip(1).chain(rail.samples.first().filter(|_| rail.closed));
             for (s, next) in rail.samples.iter().zip(next) {

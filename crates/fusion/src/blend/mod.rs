@@ -264,8 +264,7 @@ fn attempt(
     rounds: usize,
     watch: &Watch,
 ) -> Result<Blended, Trouble> {
-    let fields = params.radii.fields(mesh, curves, params.radius);
-    let mut mends = Mends::new(params.radius);
+    let mut mends = Mends::new(params.radius, params.radii.fields(mesh, curves, params.radius));
     let step = step_length(mesh, curves, params);
     let mut network = Network::of(mesh, curves, REACH_AHEAD * params.radius);
     let meeting = network.nodes.iter().find(|n| n.darts.len() > 2 && !params.radii.is_even());
@@ -276,11 +275,11 @@ fn attempt(
     let mut at_first = None;
     for round in 0.. {
         watch.step("blend", round as f64 / rounds as f64)?;
-        let trouble = match roll_missing(mesh, curves, &network, params, &fields, &mends, step, &mut rails)
+        let trouble = match roll_missing(mesh, curves, &network, params, &mends, step, &mut rails)
             .and_then(|()| assemble(mesh, curves, &network, params, step, &rails, watch))
         {
             Ok(mut blended) => {
-                mends.account_for(&rails, &fields, &mut blended);
+                mends.account_for(&rails, &mut blended);
                 return Ok(blended);
             }
             Err(trouble) => trouble,
@@ -335,13 +334,12 @@ fn roll_missing(
     curves: &[BlendCurve],
     network: &Network,
     params: &Params,
-    fields: &[RadiusField],
     mends: &Mends,
     step: f64,
     rails: &mut [Option<Rail>],
 ) -> Result<(), Trouble> {
     let spine_params = |curve: usize| spine::Params {
-        radius: running_out(mesh, curves, network, curve, mends.applied_to(&fields[curve])),
+        radius: running_out(mesh, curves, network, curve, mends.field(curve)),
         walls: network.walls(mesh, curve),
         alpha: params.alpha,
         solver: params.solver,
