@@ -1,7 +1,7 @@
 //! The parts of all regression cases as files, to look at or to try the command line on.
 
 use crate::regress::{cluster::polyhedra, posed_parts};
-use crate::{Fault, root};
+use crate::{Fault, models, root};
 use mesh_io::Model;
 use std::fs;
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ pub struct Options {
     output: PathBuf,
 }
 
-/// Writes every part as double-precision PLY, and every polyhedron as OBJ with its clusters beside it.
+/// Writes every part and every model of the recipes as double-precision PLY, and every polyhedron as OBJ with its clusters beside it.
 pub fn run(options: &Options) -> Result<(), Fault> {
     let folder = root().join(&options.output);
     fs::create_dir_all(&folder)?;
@@ -30,6 +30,10 @@ pub fn run(options: &Options) -> Result<(), Fault> {
         if let Some(clusters) = clusters {
             fs::write(folder.join(format!("{name}.toml")), clusters)?;
         }
+        count += 1;
+    }
+    for (name, mesh) in models::all()? {
+        mesh_io::write(&Model::from(mesh), &folder.join(format!("{name}.ply")))?;
         count += 1;
     }
     println!("fixtures: wrote {count} models to {}", folder.display());

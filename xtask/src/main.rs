@@ -4,13 +4,14 @@
 //! |---|---|
 //! | `ci.rs` | everything a change must pass, in order |
 //! | `regress/` | cases against approved records, real models in bulk |
-//! | `fixtures.rs` | the parts of all cases as files |
+//! | `fixtures.rs`, `models.rs` | the parts of all cases and recipes as files |
 //! | `bench.rs` | benchmarks into a page |
 //! | `tidy.rs` | crate arrows, file lengths, citations, paths |
 
 mod bench;
 mod ci;
 mod fixtures;
+mod models;
 mod regress;
 mod tidy;
 

@@ -2,7 +2,8 @@
 
 use crate::clustering::Cluster;
 use crate::length::{
-    Length, Radius, angle, angle_or_none, direction, mesh_and_loop, plane, point, positive_length, radius, share, snap,
+    Length, Radius, angle, angle_or_none, crease, direction, mesh_and_loop, not_negative, plane, point,
+    positive_length, radius, share, snap,
 };
 use crate::place::Place;
 use crate::rolling::Rolling;
@@ -71,7 +72,7 @@ pub enum Verb {
     Cluster(Cluster),
     /// Make triangles even; boundaries and features are kept
     Remesh(Remesh),
-    /// Take away what lies beyond a plane, leaving a clean opening
+    /// Take away what lies beyond a plane or a path over the surface, leaving a clean opening
     Cut(Cut),
     /// Replay a recipe: parts, cuts, poses, joins and blends from one TOML file
     Run(Run),
@@ -236,6 +237,12 @@ pub struct Compose {
     /// Join only this loop: MESH:LOOP, both counted from 0, as `info` lists them; may be given more than once
     #[arg(long = "loop", value_name = "MESH:LOOP", value_parser = mesh_and_loop)]
     pub loops: Vec<(usize, usize)>,
+    /// By how many degrees the surface turns inward where it leaves the openings; negative outward
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, value_parser = crease, allow_hyphen_values = true)]
+    pub crease: f64,
+    /// Trim openings nearer than this to one of another part back along their own part
+    #[arg(long, value_name = "DISTANCE", value_parser = positive_length)]
+    pub adjust: Option<Length>,
     /// How far from the openings the surface may go, in diagonals of the box around them
     #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = share)]
     pub space: f64,
@@ -312,13 +319,36 @@ pub struct Cut {
     pub source: Source,
     /// A point of the plane and its normal; the side the normal points away from is kept
     #[arg(long, value_name = "PX,PY,PZ,NX,NY,NZ", value_parser = plane, allow_hyphen_values = true)]
-    pub plane: (DVec3, DVec3),
-    /// Cut only the contour nearest this point
+    pub plane: Option<(DVec3, DVec3)>,
+    /// Cut along a closed path over the surface through these picks, two or more, in concave creases where there are any
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true,
+          required_unless_present = "plane", conflicts_with = "plane")]
+    pub path: Vec<DVec3>,
+    /// Which side of the path stays
+    #[arg(long, value_enum, default_value = "larger", requires = "path", conflicts_with = "seed")]
+    pub keep: Keep,
+    /// How strongly creases attract the path; 0 gives the geodesic
+    #[arg(long, value_name = "STRENGTH", default_value_t = 4.0, value_parser = not_negative, requires = "path")]
+    pub crease: f64,
+    /// With a plane, cut only the contour nearest this point; with a path, keep the side nearest to it
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub seed: Option<DVec3>,
-    /// Move crossings onto vertices nearer than this share of an edge, which gives openings without short edges
-    #[arg(long, value_name = "SHARE", default_value = "1e-6", value_parser = snap)]
-    pub snap: f64,
+    /// Move crossings onto vertices nearer than this share of an edge, which gives openings without short edges [default: 1e-6; 0.05
+    /// for a path]
+    #[arg(long, value_name = "SHARE", value_parser = snap)]
+    pub snap: Option<f64>,
+    /// Rounds by which the rim is made smooth on the surface
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub smooth: u16,
+}
+
+/// A side of a path.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Keep {
+    /// The one with more area
+    Larger,
+    /// The one with less
+    Smaller,
 }
 
 #[derive(Args)]
@@ -357,6 +387,9 @@ pub struct Render {
     /// Direction from the mesh to the eye
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub view: Option<DVec3>,
+    /// Look along parallel rays, so that lengths across the view compare
+    #[arg(long)]
+    pub parallel: bool,
     /// Width and height in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=8192))]
     pub size: u32,
@@ -382,18 +415,45 @@ pub struct Demo {
     pub output: PathBuf,
 }
 
-/// Gives `--weld` its default where a file name follows it, which clap would take for the tolerance.
+/// Gives `--weld` its default where a file name follows it, which clap would take for the tolerance, and repeats `--path` before each
+/// of several points, which clap would take for options where they start with a minus.
 pub fn with_bare_weld(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
-    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let arguments: Vec<OsString> = spread_path(arguments);
     let is_length = |a: Option<&OsString>| a.and_then(|a| a.to_str()).is_some_and(|a| a.parse::<Length>().is_ok());
     let bare = |i: usize| arguments[i] == "--weld" && !is_length(arguments.get(i + 1));
     (0..arguments.len()).map(|i| if bare(i) { "--weld=0".into() } else { arguments[i].clone() }).collect()
+}
+
+fn spread_path(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let is_point = |a: &OsString| a.to_str().is_some_and(|a| point(a).is_ok());
+    let mut spread: Vec<OsString> = vec![];
+    for argument in arguments {
+        let n = spread.len();
+        if n > 1 && spread[n - 2] == "--path" && is_point(&spread[n - 1]) && is_point(&argument) {
+            spread.push("--path".into());
+        }
+        spread.push(argument);
+    }
+    spread
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use clap::CommandFactory;
+
+    #[test]
+    fn a_path_takes_several_points() {
+        for line in [
+            "fusion-cli cut a.obj -o b.obj --path -1,0,0 0,-1,0 1,0,0",
+            "fusion-cli cut --path -1,0,0 0,-1,0 --path 1,0,0 a.obj -o b.obj",
+        ] {
+            let Verb::Cut(cut) = parse(line).unwrap().verb else { panic!("{line}") };
+            assert_eq!((cut.path.len(), cut.input), (3, "a.obj".into()), "{line}");
+        }
+        assert!(parse("fusion-cli cut a.obj -o b.obj").is_err());
+        assert!(parse("fusion-cli cut a.obj -o b.obj --plane 0,0,0,0,0,1 --path 0,0,0").is_err());
+    }
 
     fn parse(line: &str) -> Result<Cli, clap::Error> {
         Cli::try_parse_from(with_bare_weld(line.split(' ').map(OsString::from)))

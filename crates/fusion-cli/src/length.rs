@@ -68,6 +68,22 @@ pub fn radius_at(text: &str) -> Result<(DVec3, Length), String> {
     Ok((point(at)?, positive_length(radius)?))
 }
 
+/// An angle from −90 to 90 degrees.
+pub fn crease(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(angle) if (-90.0..=90.0).contains(&angle) => Ok(angle),
+        _ => Err("must be an angle from -90 to 90 degrees".into()),
+    }
+}
+
+/// A number of zero or more.
+pub fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if (0.0..=1e3).contains(&number) => Ok(number),
+        _ => Err("must be a number from 0 to 1000".into()),
+    }
+}
+
 /// A point or direction, `x,y,z`.
 pub fn point(text: &str) -> Result<DVec3, String> {
     let numbers: Vec<f64> = text.split(',').map_while(|n| n.trim().parse().ok()).collect();

@@ -79,3 +79,21 @@ fn malformed_recipes_exit_with_3_line_and_key() {
     let missing = bench.run("run nowhere.toml").expect(3);
     assert!(missing.stderr.contains("nowhere.toml"));
 }
+
+/// Both halves of a picked cut, and the picks as the report tells their price.
+#[test]
+fn a_path_cuts_in_two() {
+    let bench = Bench::new();
+    // The test models are boxes around 0, 0, 0 and beside it; a path round the first one's middle.
+    let picks = "0.6,0.1,0.02 -0.1,0.6,-0.03 -0.6,-0.1,0.01 0.1,-0.6,0.03";
+    bench.run(&format!("cut a.off -o large.off --path {picks} --report r.json")).expect(0);
+    bench.run(&format!("cut a.off -o small.off --path {picks} --keep smaller")).expect(0);
+    let figures = json(&bench.read("r.json"))["figures"].clone();
+    assert!(figures["path_cost"].as_f64().unwrap() <= figures["geodesic_cost"].as_f64().unwrap());
+    for half in ["large.off", "small.off"] {
+        let info = json(bench.run(&format!("info {half} --json")).expect(0).text());
+        assert_eq!(info["boundary_loops"].as_array().map(Vec::len), Some(1), "{info}");
+    }
+    let error = bench.run("cut a.off -o out.off --path 0,0,1").expect(4);
+    assert!(error.stderr.contains("two picks"), "{}", error.stderr);
+}

@@ -7,6 +7,7 @@
 //! | `cluster.rs` | polyhedra rounded by clusters |
 //! | `compositions.rs` | random compositions of open pieces |
 //! | `lewiner.rs` | marching cubes on random fields |
+//! | `recipes.rs` | recipes replayed |
 //! | `join.rs` | one job through the library |
 //! | `pairs.rs`, `pose.rs` | pairs of real models in random poses |
 //! | `nasty.rs` | broken files through the command line |
@@ -21,6 +22,7 @@ mod lewiner;
 mod nasty;
 mod pairs;
 mod pose;
+mod recipes;
 mod reference;
 
 use crate::{Fault, root};
@@ -50,6 +52,7 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<(), Fault> {
     let mut reference = if options.reference { Some(Reference::new()?) } else { None };
     let mut faults = cluster::run(options.bless, &mut reference)?;
+    faults += recipes::run(options.bless, &mut reference)?;
     faults += cases(options.bless, &mut reference)?;
     if options.reference {
         faults += lewiner::run()?;

@@ -18,6 +18,8 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         edge_length: args.edge_length.map(|l| l.resolve(diagonal)),
         loops: (!args.loops.is_empty()).then(|| args.loops.clone()),
         space: args.space,
+        crease: args.crease,
+        adjust: args.adjust.map(|l| l.resolve(diagonal)),
         ..compose::Params::new(destination.format)
     };
     let mut outcome = compose(&models, &params, session.watch()).map_err(|e| explain(&e, args))?;

@@ -35,6 +35,7 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         height: args.size,
         view: args.view.unwrap_or(defaults.view),
         color,
+        projection: if args.parallel { render::Projection::Orthographic } else { defaults.projection },
         wireframe: args.wireframe.then(render::Wireframe::default),
         ..defaults
     };

@@ -1,7 +1,7 @@
 //! What the field must satisfy: the parts' surface around their openings, and which side is out.
 
 use super::openings::Opening;
-use super::{Method, Params};
+use super::{Method, Params, SilhouetteCurve};
 use glam::DVec3;
 use mesh_core::{Adjacency, Connected, Faces, HalfedgeId, Positions, TriMesh, VertexId, one_sided_normal};
 use rbf_solve::{Constraint, Kernel, Thinning, thin};
@@ -12,6 +12,9 @@ const OFFSET: f64 = 0.1;
 /// Constraints nearer to each other than this share of the median edge are merged.
 const MERGE: f64 = 0.1;
 
+/// Up to how many unknowns silhouettes and creases get exact normals.
+const MOST_EXACT: usize = 6000;
+
 /// The constraints, and the distance within which some are merged.
 pub(super) struct Constraints {
     pub all: Vec<Constraint>,
@@ -19,10 +22,17 @@ pub(super) struct Constraints {
 }
 
 /// Boundary vertices first, then rings around them, thinned away from the boundary, then points off the surface.
-pub(super) fn constraints(parts: &[Connected<TriMesh>], openings: &[Opening], params: &Params) -> Constraints {
+pub(super) fn constraints(
+    parts: &[Connected<TriMesh>],
+    openings: &[Opening],
+    curves: &[SilhouetteCurve],
+    params: &Params,
+) -> Constraints {
     let mut on: Vec<Constraint> = vec![];
     let mut rings: Vec<Constraint> = vec![];
     let mut off: Vec<Constraint> = vec![];
+    // Places whose normal the rings would spoil, or that have none.
+    let mut creased: Vec<(DVec3, DVec3)> = vec![];
     let mut merge = f64::INFINITY;
     let spacing = spacing(openings.iter().map(|o| o.vertices.len()).sum());
     for opening in openings {
@@ -30,6 +40,10 @@ pub(super) fn constraints(parts: &[Connected<TriMesh>], openings: &[Opening], pa
         let offset = OFFSET * median_edge(opening);
         merge = merge.min(MERGE * median_edge(opening));
         let boundary = opening.vertices.len();
+        if opening.crease != 0.0 {
+            creased.extend(opening.rim.points.iter().copied().zip(opening.normals.iter().copied()));
+            continue;
+        }
         let vertices = around(mesh, &opening.vertices, params.ring_count());
         let points: Vec<DVec3> = vertices.iter().map(|&v| mesh.position(v)).collect();
         // Vertices by ring come nearest first, so what is thinned away is far out.
@@ -63,6 +77,18 @@ pub(super) fn constraints(parts: &[Connected<TriMesh>], openings: &[Opening], pa
                 let step = OFFSET / MERGE * merge;
                 off.extend(normal.map(|n| Constraint::off_surface(guide.point + step * n.normalize_or_zero(), step)));
             }
+        }
+    }
+    creased.extend(curves.iter().flat_map(|c| &c.points).map(|at| (at.point, at.normal)));
+    // Exact normals cost three unknowns each and a dense solve; where that is too dear, points on both sides do.
+    let few = on.len() + rings.len() + off.len() + 4 * creased.len() <= MOST_EXACT;
+    for (point, normal) in creased {
+        if few && params.kernel != super::Kernel::Biharmonic {
+            on.push(Constraint::with_normal(point, normal));
+        } else {
+            let step = OFFSET / MERGE * merge;
+            on.push(Constraint::on_surface(point));
+            off.extend([step, -step].map(|s| Constraint::off_surface(point + s * normal, s)));
         }
     }
     on.extend(rings);

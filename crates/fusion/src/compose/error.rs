@@ -53,6 +53,38 @@ pub enum Error {
         /// A point of the loop.
         at: DVec3,
     },
+    /// An opening cannot be trimmed.
+    #[error("loop {index} of part {part} cannot be moved back: {source}")]
+    Adjust {
+        /// The part.
+        part: usize,
+        /// Its loop.
+        index: usize,
+        /// Why.
+        source: Box<crate::cut::Error>,
+    },
+    /// Trimming an opening has made several of it, or run into another.
+    #[error(
+        "moving the openings apart makes several of loop {index} of part {part}, near {at}, or joins it with another; ask for a smaller distance, or move the parts apart"
+    )]
+    Trimmed {
+        /// The part.
+        part: usize,
+        /// Its loop.
+        index: usize,
+        /// A place on it.
+        at: DVec3,
+    },
+    /// A silhouette cannot be led as drawn.
+    #[error("silhouette {index}, near {at}: {reason}")]
+    Silhouette {
+        /// Which, counting from 0.
+        index: usize,
+        /// Where, in model units.
+        at: DVec3,
+        /// Why, and what would help.
+        reason: &'static str,
+    },
     /// The surface closes openings instead of joining them.
     #[error(
         "the surface falls into {pieces} pieces: loop {index} of part {part}, around {at}, is not joined to the rest; bring the openings closer or turn them towards each other, lead the surface with a silhouette, or try another --kernel"
@@ -104,6 +136,8 @@ impl Error {
             | Self::Overlap { at, .. }
             | Self::Buried { at, .. }
             | Self::Apart { at, .. }
+            | Self::Silhouette { at, .. }
+            | Self::Trimmed { at, .. }
             | Self::Crossing { at, .. }
             | Self::Surface(
                 L::NotANumber { at }
@@ -119,6 +153,7 @@ impl Error {
                 | rbf_solve::Error::Singular { at, .. }
                 | rbf_solve::Error::NotConverged { at, .. },
             ) => Some(*at),
+            Self::Adjust { source, .. } => source.place(),
             _ => None,
         }
     }
@@ -136,6 +171,6 @@ impl Error {
                 | Self::Field(rbf_solve::Error::Cancelled)
                 | Self::Surface(lmc_tessellate::Error::Cancelled(_))
                 | Self::Remesh(remesh::Error::Cancelled(_))
-        )
+        ) || matches!(self, Self::Adjust { source, .. } if source.is_cancelled())
     }
 }

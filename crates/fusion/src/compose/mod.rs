@@ -2,28 +2,35 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `adjust.rs` | openings that are too near to others, trimmed |
 //! | `openings.rs` | the loops to be joined, and whether the parts are posed so that they can be |
+//! | `silhouette.rs`, `bezier.rs` | strokes made into curves that the surface shows as its silhouette |
 //! | `constraints.rs` | what the field must satisfy |
 //! | `surface.rs` | the field's zero set between the openings, tessellated and remeshed |
 //! | `lead.rs` | guides through necks that would break |
 //! | `weld.rs` | parts and surface as one mesh, and whether it hangs together |
 //! | `error.rs` | what can go wrong, where, and what would help |
 
+mod adjust;
+mod bezier;
 mod constraints;
 mod error;
 mod lead;
 mod openings;
+mod silhouette;
 mod surface;
 mod weld;
 
 pub use error::Error;
+pub use silhouette::{Silhouette, SilhouetteCurve, SilhouettePoint};
 
 use crate::outcome::{Outcome, Promise, finish_as};
 use crate::{Counts, Report};
+use adjust::adjust;
 use constraints::{constraints, fitting};
 use glam::DVec3;
 use lead::lead;
-use mesh_core::{Connected, TriMesh, Watch};
+use mesh_core::{Bounds, Connected, Origins, TriMesh, Watch, bounds};
 use mesh_io::{Format, Model};
 use openings::{Opening, check_pose, mean_edge, openings};
 use rbf_solve::Field;
@@ -46,7 +53,15 @@ pub struct Params {
     pub edge_length: Option<f64>,
     /// The loops to be joined, as (part, loop of the part). `None`: all.
     pub loops: Option<Vec<(usize, usize)>>,
-    /// Places that the surface passes through besides, from silhouettes.
+    /// By how many degrees the surface turns inward where it leaves an opening, from −90 to 90; negative outward. 0 is smooth.
+    pub crease: f64,
+    /// The same for single openings.
+    pub creases: Vec<Crease>,
+    /// Trims openings nearer than this to an opening of another part back along their own part, in model units. `None`: parts stay whole.
+    pub adjust: Option<f64>,
+    /// Silhouettes that the surface shall have.
+    pub silhouettes: Vec<Silhouette>,
+    /// Places that the surface passes through besides.
     pub guides: Vec<Guide>,
     /// How far from the openings' box the surface may go, as a multiple of the box's diagonal.
     pub space: f64,
@@ -64,6 +79,10 @@ impl Params {
             cell: 1.0,
             edge_length: None,
             loops: None,
+            crease: 0.0,
+            creases: vec![],
+            adjust: None,
+            silhouettes: vec![],
             guides: vec![],
             space: 1.0,
             format,
@@ -101,6 +120,17 @@ pub enum Method {
     Montage,
 }
 
+/// A transition that is not smooth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crease {
+    /// The part.
+    pub part: usize,
+    /// Its loop.
+    pub index: usize,
+    /// As [`Params::crease`].
+    pub angle: f64,
+}
+
 /// A place that the surface passes through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guide {
@@ -122,14 +152,22 @@ const FINENESS: [f64; 3] = [1.0, 1.5, 2.2];
 /// [`crate::Error`]: parts that are not manifold or badly posed, a surface that does not join them or crosses them.
 pub fn compose(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcome, crate::Error> {
     let mut report = Report::new("compose", parts.iter().map(|m| Counts::of("", &m.mesh)).collect());
-    let meshes = report.time("connect", || connect(parts))?;
-    let openings = openings(&meshes, params.loops.as_deref())?;
-    report.time("pose", || check_pose(&meshes, &openings))?;
+    let given = report.time("connect", || connect(parts))?;
+    let trimmed = params.adjust.map(|d| report.time("adjust", || adjust(&given, params, d, watch))).transpose()?;
+    if let Some(t) = &trimmed {
+        report.figures.insert("trimmed".into(), t.trimmed as f64);
+    }
+    let (meshes, params) = trimmed.as_ref().map_or((&given[..], params), |t| (&t.meshes, &t.params));
+    let openings = openings(meshes, params)?;
+    report.time("pose", || check_pose(meshes, &openings))?;
+    let curves = report.time("silhouettes", || silhouette::curves(&openings, &params.silhouettes))?;
+    let own = trimmed.as_ref().map(|t| &t.origins[..]);
+    let scene = Scene { parts, meshes, own, openings: &openings, curves: &curves };
     report.figures.insert("loops".into(), openings.len() as f64);
     let mut led = params.clone();
     let mut first_error = None;
     for _ in 0..openings.len() {
-        let error = match fitted(parts, &meshes, &openings, &led, report.clone(), watch) {
+        let error = match fitted(&scene, &led, report.clone(), watch) {
             Err(crate::Error::Compose(error @ Error::Apart { .. })) => error,
             // Where leading it makes things worse, what was wrong at first says more.
             Err(error) if !error.is_cancelled() => return Err(first_error.map_or(error, crate::Error::Compose)),
@@ -151,22 +189,27 @@ pub fn compose(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcom
     Err(first_error.unwrap_or(Error::Closed).into())
 }
 
+/// What is to be joined.
+struct Scene<'a> {
+    parts: &'a [Model],
+    /// The parts, trimmed if asked for.
+    meshes: &'a [Connected<TriMesh>],
+    /// The trimmed parts' origins.
+    own: Option<&'a [Origins]>,
+    openings: &'a [Opening],
+    curves: &'a [SilhouetteCurve],
+}
+
 /// Fits the field and tries the surface with finer and finer cells.
-fn fitted(
-    parts: &[Model],
-    meshes: &[Connected<TriMesh>],
-    openings: &[Opening],
-    params: &Params,
-    mut report: Report,
-    watch: &Watch,
-) -> Result<Outcome, crate::Error> {
-    let field = report.time("fit", || fit(meshes, openings, params, watch))?;
+fn fitted(scene: &Scene<'_>, params: &Params, mut report: Report, watch: &Watch) -> Result<Outcome, crate::Error> {
+    let field = report.time("fit", || fit(scene, params, watch))?;
+    account(scene, &field, &mut report);
     report.figures.insert("constraints".into(), field.centres() as f64);
     report.residuals.insert("field".into(), field.residual());
     let mut attempts = FINENESS.into_iter().peekable();
     loop {
         let fineness = attempts.next().unwrap_or(1.0);
-        match attempt(parts, meshes, openings, &field, params, fineness, report.clone(), watch) {
+        match attempt(scene, &field, params, fineness, report.clone(), watch) {
             Err(e) if attempts.peek().is_some() && is_local(&e) => report.figures.insert("retries".into(), 1.0),
             result => return result,
         };
@@ -183,22 +226,20 @@ fn is_local(error: &crate::Error) -> bool {
     )
 }
 
-#[expect(clippy::too_many_arguments, reason = "one attempt of the pipeline above")]
 fn attempt(
-    parts: &[Model],
-    meshes: &[Connected<TriMesh>],
-    openings: &[Opening],
+    scene: &Scene<'_>,
     field: &Field,
     params: &Params,
     fineness: f64,
     mut report: Report,
     watch: &Watch,
 ) -> Result<Outcome, crate::Error> {
+    let Scene { parts, meshes, own, openings, .. } = *scene;
     let mut made = surface(openings, field, params, fineness, &mut report, watch)?;
     let taken = part_edges(meshes, openings, &made.starts);
     split_chords(&mut made.mesh, &taken, field, 0.5 * mean_edge(openings));
     check_pieces(meshes, openings, &made, &mut report)?;
-    let Welded { mesh, origins } = report.time("weld", || weld(meshes, openings, &made));
+    let Welded { mesh, origins } = report.time("weld", || weld(meshes, own, openings, &made));
     let promise = if params.loops.is_none() { Promise::Closed } else { Promise::Manifold };
     finish_as(promise, parts, mesh.clone(), origins.clone(), params.format, report, watch).map_err(|e| match e {
         crate::Error::Invalid(invalid) if invalid.format.is_none() => match name_crossing(&mesh, &origins, watch) {
@@ -216,8 +257,31 @@ fn connect(parts: &[Model]) -> Result<Vec<Connected<TriMesh>>, crate::Error> {
     parts.iter().enumerate().map(connect).collect()
 }
 
-fn fit(meshes: &[Connected<TriMesh>], openings: &[Opening], params: &Params, watch: &Watch) -> Result<Field, Error> {
-    let wanted = constraints(meshes, openings, params);
+fn fit(scene: &Scene<'_>, params: &Params, watch: &Watch) -> Result<Field, Error> {
+    let wanted = constraints(scene.meshes, scene.openings, scene.curves, params);
     let progress = |share: f64| watch.step("fit", share).is_ok();
     Ok(Field::fit(&wanted.all, &fitting(params, wanted.merge), &progress)?)
+}
+
+/// Notes how well the field keeps to the silhouettes, and where their control points are.
+fn account(scene: &Scene<'_>, field: &Field, report: &mut Report) {
+    if scene.curves.is_empty() {
+        return;
+    }
+    let size = scene.meshes.iter().map(bounds).fold(Bounds::EMPTY, Bounds::union).diagonal();
+    let (mut off, mut turned) = (0.0f64, 0.0f64);
+    for (k, curve) in scene.curves.iter().enumerate() {
+        for at in &curve.points {
+            off = off.max(field.value(at.point).abs() / size);
+            turned = turned.max(field.gradient(at.point).normalize_or_zero().dot(curve.view).abs());
+        }
+        let control = match &curve.control[..] {
+            [] => String::new(),
+            six => format!(", control points {}", six.iter().map(DVec3::to_string).collect::<Vec<_>>().join(" ")),
+        };
+        report.notes.push(format!("silhouette {k}: {} places{control}", curve.points.len()));
+    }
+    report.figures.insert("silhouettes".into(), scene.curves.len() as f64);
+    report.residuals.insert("silhouette".into(), off);
+    report.residuals.insert("silhouette_normal".into(), turned);
 }

@@ -1,10 +1,11 @@
 //! The openings to be joined, and whether the parts are posed so that they can be.
 
-use super::Error;
+use super::{Error, Params};
 use glam::DVec3;
 use lmc_tessellate::Rim;
 use mesh_core::{
-    Bounds, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, boundary_loops, bounds, components,
+    Adjacency, Bounds, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, boundary_loops, bounds,
+    components, one_sided_normal,
 };
 use mesh_query::TriBvh;
 use tri_intersect::triangles_intersect;
@@ -18,9 +19,31 @@ pub(super) struct Opening {
     /// Its vertices in order.
     pub vertices: Vec<VertexId>,
     pub rim: Rim,
+    /// Outward unit normals at the vertices, turned by the crease.
+    pub normals: Vec<DVec3>,
+    /// By how much the surface turns inward at the opening, in radians.
+    pub crease: f64,
 }
 
 impl Opening {
+    fn new(part: usize, index: usize, mesh: &Connected<TriMesh>, walk: Vec<HalfedgeId>, crease: f64) -> Self {
+        let vertices: Vec<VertexId> = walk.iter().map(|&h| mesh.tail(h)).collect();
+        let mut rim = Rim::of(mesh, &walk);
+        let own = |&v: &VertexId| one_sided_normal(mesh, v, mesh.ring(v).map(HalfedgeId::face));
+        let mut normals: Vec<DVec3> = vertices.iter().map(own).collect();
+        let (n, (sin, cos)) = (walk.len(), crease.sin_cos());
+        if crease != 0.0 {
+            // The part is on the left of its boundary, so t × n leads out of it.
+            let turned = |along: DVec3, normal: DVec3| {
+                (cos * normal + sin * along.cross(normal).normalize_or_zero()).normalize_or(normal)
+            };
+            let at = |i: usize| rim.points[i % n];
+            normals = (0..n).map(|i| turned(at(i + 1) - at(i + n - 1), normals[i])).collect();
+            rim.normals = (0..n).map(|i| turned(at(i + 1) - at(i), rim.normals[i])).collect();
+        }
+        Self { part, index, walk, vertices, rim, normals, crease }
+    }
+
     /// Its length.
     pub fn perimeter(&self) -> f64 {
         self.rim.lengths().sum()
@@ -33,16 +56,18 @@ impl Opening {
 }
 
 /// The chosen loops as (part, loop), or all.
-pub(super) fn openings(parts: &[Connected<TriMesh>], chosen: Option<&[(usize, usize)]>) -> Result<Vec<Opening>, Error> {
+pub(super) fn openings(parts: &[Connected<TriMesh>], params: &Params) -> Result<Vec<Opening>, Error> {
+    let chosen = params.loops.as_deref();
     let mut found = vec![];
     for (part, mesh) in parts.iter().enumerate() {
         for (index, walk) in boundary_loops(mesh).into_iter().enumerate() {
-            let vertices = walk.iter().map(|&h| mesh.tail(h)).collect();
-            let rim = Rim::of(mesh, &walk);
-            found.push(Opening { part, index, walk, vertices, rim });
+            let own = params.creases.iter().rev().find(|c| (c.part, c.index) == (part, index));
+            let crease = own.map_or(params.crease, |c| c.angle);
+            found.push(Opening::new(part, index, mesh, walk, crease.to_radians()));
         }
     }
-    for &(part, index) in chosen.unwrap_or_default() {
+    let named = chosen.unwrap_or_default().iter().copied().chain(params.creases.iter().map(|c| (c.part, c.index)));
+    for (part, index) in named {
         let count = found.iter().filter(|o| o.part == part).count();
         if index >= count {
             return Err(Error::NoLoop { part, index, count });

@@ -18,8 +18,13 @@ pub(super) struct Welded {
     pub origins: Origins,
 }
 
-/// All parts in order, then the surface, sharing the openings' vertices.
-pub(super) fn weld(parts: &[Connected<TriMesh>], openings: &[Opening], surface: &Transition) -> Welded {
+/// All parts in order, then the surface, sharing the openings' vertices. `own` are the parts' origins, if they are not the inputs themselves.
+pub(super) fn weld(
+    parts: &[Connected<TriMesh>],
+    own: Option<&[Origins]>,
+    openings: &[Opening],
+    surface: &Transition,
+) -> Welded {
     let mut mesh = TriMesh::default();
     let mut origins = Origins::default();
     let mut firsts = vec![];
@@ -28,7 +33,10 @@ pub(super) fn weld(parts: &[Connected<TriMesh>], openings: &[Opening], surface: 
         firsts.push(first);
         mesh.positions.extend(&one.positions);
         mesh.faces.extend(one.faces.iter().map(|f| f.map(|v| VertexId(v.0 + first))));
-        let own = Origins::identity(part, one.positions.len(), one.faces.len());
+        let own = own.map_or_else(
+            || Origins::identity(part, one.positions.len(), one.faces.len()),
+            |own| own[part as usize].clone(),
+        );
         for &v in own.vertices.as_slice() {
             origins.vertices.push(v);
         }

@@ -1,10 +1,12 @@
 //! The side of the contours that stays.
 
-use super::Error;
 use super::section::Section;
+use super::{Error, Keep};
 use mesh_core::{
-    Connected, FaceId, FaceMap, FaceOrigin, Faces, Origins, Positions, TriMesh, VertexId, VertexOrigin, components,
+    Connected, FaceId, FaceMap, FaceOrigin, Faces, Origins, Positions, TriMesh, VertexId, VertexOrigin, area_vector,
+    components,
 };
+use mesh_query::TriBvh;
 use tri_intersect::embed::{curve_edges, faces_left_of, flood};
 
 /// Which faces stay: all but those reached from the right of the contours and, unless only a seed's contour was cut, components that lie
@@ -40,6 +42,31 @@ pub(super) fn kept_faces(
             }
         }
     }
+    Ok(gone.as_slice().iter().map(|g| !g).collect::<Vec<_>>().into())
+}
+
+/// Which faces stay beside a closed path: all but those of the other side.
+pub(super) fn kept_side(mesh: &Connected<TriMesh>, chain: &[VertexId], keep: Keep) -> Result<FaceMap<bool>, Error> {
+    let back: Vec<VertexId> = chain.iter().rev().copied().collect();
+    let sides = [chain, &back].map(|chain| flood(mesh, curve_edges(chain, true), &faces_left_of(mesh, chain, true)));
+    if let Some(leak) = mesh.face_ids().find(|&f| sides[0][f] && sides[1][f]) {
+        return Err(Error::DoesNotSeparate { at: mesh.position(mesh.corners(leak)[0]) });
+    }
+    let area = |side: &FaceMap<bool>| -> f64 {
+        let faces = mesh.face_ids().filter(|&f| side[f]);
+        faces.map(|f| area_vector(mesh.mesh().triangle(f)).length()).sum()
+    };
+    let left = match keep {
+        Keep::Larger => area(&sides[0]) >= area(&sides[1]),
+        Keep::Smaller => area(&sides[0]) < area(&sides[1]),
+        Keep::Near(at) => {
+            let faces: Vec<FaceId> = mesh.face_ids().filter(|&f| sides[0][f] || sides[1][f]).collect();
+            let tree = TriBvh::build_subset(mesh.mesh(), &faces).ok();
+            let hit = tree.and_then(|t| t.closest_point(mesh.mesh(), at));
+            hit.is_some_and(|h| sides[0][h.face])
+        }
+    };
+    let gone = &sides[usize::from(left)];
     Ok(gone.as_slice().iter().map(|g| !g).collect::<Vec<_>>().into())
 }
 

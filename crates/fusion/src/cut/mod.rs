@@ -1,4 +1,4 @@
-//! Cuts by planes: the side that the normal points away from stays, with clean rims.
+//! Cuts by planes, of which the side that the normal points away from stays, and by closed paths over the surface; either with clean rims.
 //!
 //! ```
 //! use fusion::cut::{Params, PlaneCut, cut};
@@ -15,23 +15,30 @@
 //! | file | holds |
 //! |---|---|
 //! | `section.rs` | the contours of a plane on a mesh, and the one nearest a seed |
+//! | `scissor.rs`, `crease.rs` | closed paths through a few picks, along concave creases |
+//! | `smooth.rs` | contours and paths made smooth on the surface |
 //! | `keep.rs` | the side that stays, as a mesh of its own |
-//! | `error.rs` | why a plane cannot cut |
+//! | `error.rs` | why a cut is not possible |
 
+mod crease;
 mod error;
 mod keep;
+mod scissor;
 mod section;
+mod smooth;
 
 pub use error::Error;
 
 use crate::outcome::{Outcome, Promise, finish_as};
 use crate::{Counts, Report};
 use glam::DVec3;
-use keep::{kept_faces, submesh};
+use keep::{kept_faces, kept_side, submesh};
 use mesh_core::{Connected, Faces, Origins, Stage, TriMesh, Watch, boundary_loops};
 use mesh_io::{Format, Model};
+use scissor::closed_path;
 use section::Section;
-use tri_intersect::embed::{EmbedParams, embed};
+use smooth::smoothed;
+use tri_intersect::embed::{EmbedError, EmbedParams, embed};
 
 /// One plane, and how much of its section is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,13 +52,71 @@ pub struct PlaneCut {
     /// Crossings nearer to a vertex than this share of the edge move onto the vertex, in [0, 0.25]. More gives rims without short
     /// edges, and takes them off the plane by that share of an edge at most.
     pub snap: f64,
+    /// Rounds by which closed contours are made smooth on the surface, off the plane.
+    pub smooth: usize,
 }
 
 impl PlaneCut {
     /// Cuts along the whole plane, exactly.
     pub const fn new(point: DVec3, normal: DVec3) -> Self {
         // Enough to leave no edge that rounding could fold.
-        Self { point, normal, seed: None, snap: 1e-6 }
+        Self { point, normal, seed: None, snap: 1e-6, smooth: 0 }
+    }
+}
+
+/// A closed path over the surface through a few picks, along concave creases where there are any.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathCut {
+    /// Two points or more near the surface, in order round the limb, in model units. The path closes by itself.
+    pub picks: Vec<DVec3>,
+    /// Which side stays.
+    pub keep: Keep,
+    /// How strongly creases attract: a unit of length costs 1 / (1 + this) in one. 0 gives the geodesic.
+    pub crease: f64,
+    /// As for a plane.
+    pub snap: f64,
+    /// As for a plane.
+    pub smooth: usize,
+}
+
+impl PathCut {
+    /// Cuts along the path, of which the larger side stays.
+    pub const fn new(picks: Vec<DVec3>) -> Self {
+        // Paths hug vertices in creases; a share of 0.05 leaves hardly a needle.
+        Self { picks, keep: Keep::Larger, crease: 4.0, snap: 0.05, smooth: 0 }
+    }
+}
+
+/// Which side of a path stays.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Keep {
+    /// The one with more area.
+    #[default]
+    Larger,
+    /// The one with less.
+    Smaller,
+    /// The one with the point of the surface nearest to this.
+    Near(DVec3),
+}
+
+/// One cut.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cut {
+    /// Along a plane.
+    Plane(PlaneCut),
+    /// Along a path over the surface.
+    Path(PathCut),
+}
+
+impl From<PlaneCut> for Cut {
+    fn from(plane: PlaneCut) -> Self {
+        Self::Plane(plane)
+    }
+}
+
+impl From<PathCut> for Cut {
+    fn from(path: PathCut) -> Self {
+        Self::Path(path)
     }
 }
 
@@ -59,15 +124,15 @@ impl PlaneCut {
 #[derive(Clone, Debug)]
 pub struct Params {
     /// Each is made in what the ones before it have left.
-    pub cuts: Vec<PlaneCut>,
+    pub cuts: Vec<Cut>,
     /// The format the result is meant for, whose rounding it must survive.
     pub format: Format,
 }
 
 impl Params {
     /// Cuts for a format.
-    pub const fn new(cuts: Vec<PlaneCut>, format: Format) -> Self {
-        Self { cuts, format }
+    pub fn new<C: Into<Cut>>(cuts: Vec<C>, format: Format) -> Self {
+        Self { cuts: cuts.into_iter().map(Into::into).collect(), format }
     }
 }
 
@@ -85,8 +150,16 @@ pub fn cut(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, crat
         .time("connect", || Connected::new(part.mesh.clone()))
         .map_err(|source| crate::Error::NotManifold { part: 0, source })?;
     let mut contours = 0;
-    for plane in &params.cuts {
-        let (kept, step, count) = report.time("cut", || cut_once(&mesh, plane, watch))?;
+    for one in &params.cuts {
+        let (kept, step, count) = match one {
+            Cut::Plane(plane) => report.time("cut", || cut_plane(&mesh, plane, watch))?,
+            Cut::Path(path) => {
+                let (kept, step, cost) = report.time("cut", || cut_path(&mesh, path, watch))?;
+                report.figures.insert("path_cost".into(), cost[0]);
+                report.figures.insert("geodesic_cost".into(), cost[1]);
+                (kept, step, 1)
+            }
+        };
         origins = step.compose(&[Stage { origins: &origins, faces: &mesh }], &[&part.mesh]);
         mesh = kept;
         contours += count;
@@ -98,19 +171,66 @@ pub fn cut(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, crat
 }
 
 /// One plane: what stays, where it came from, and how many contours were cut.
-fn cut_once(
+fn cut_plane(
     mesh: &Connected<TriMesh>,
     plane: &PlaneCut,
     watch: &Watch,
 ) -> Result<(Connected<TriMesh>, Origins, usize), Error> {
-    let section = Section::new(mesh, plane)?;
+    cut_section(mesh, &Section::new(mesh, plane)?, plane, watch)
+}
+
+fn cut_section(
+    mesh: &Connected<TriMesh>,
+    section: &Section<'_>,
+    plane: &PlaneCut,
+    watch: &Watch,
+) -> Result<(Connected<TriMesh>, Origins, usize), Error> {
     let curves = section.contours(plane.seed)?;
+    let curves = curves.iter().map(|c| smoothed(mesh, c, plane.smooth)).collect::<Result<Vec<_>, _>>()?;
     let params = EmbedParams { snap: plane.snap.clamp(0.0, 0.25), ..EmbedParams::default() };
     let embedded = embed(mesh, &curves, &params, watch).map_err(|e| section.explain(e))?;
     let open: Vec<bool> = curves.iter().map(|c| c.closed).collect();
     let parted = Connected::new(embedded.mesh).map_err(|e| Error::Pinched { at: e.place.unwrap_or(plane.point) })?;
-    let kept = kept_faces(&parted, &embedded.curves, &open, &section, plane.seed.is_some())?;
+    let kept = kept_faces(&parted, &embedded.curves, &open, section, plane.seed.is_some())?;
     let (left, origins) = submesh(&parted, &embedded.origins, &kept);
     let left = Connected::new(left).map_err(|e| Error::Pinched { at: e.place.unwrap_or(plane.point) })?;
     Ok((left, origins, curves.len()))
+}
+
+/// One path: what stays, where it came from, and what the path and the geodesic cost.
+fn cut_path(
+    mesh: &Connected<TriMesh>,
+    path: &PathCut,
+    watch: &Watch,
+) -> Result<(Connected<TriMesh>, Origins, [f64; 2]), Error> {
+    let found = closed_path(mesh, &path.picks, path.crease.max(0.0), watch)?;
+    let curve = smoothed(mesh, &found.curve, path.smooth)?;
+    let params = EmbedParams { snap: path.snap.clamp(0.0, 0.25), ..EmbedParams::default() };
+    let embedded = embed(mesh, &[curve], &params, watch).map_err(|e| match e {
+        EmbedError::Crossings(all) => Error::Crossed { at: all.first().map_or(path.picks[0], |c| c.place) },
+        EmbedError::Cancelled(c) => c.into(),
+        other => other.into(),
+    })?;
+    let pinched = |e: mesh_core::NotManifold| Error::Crossed { at: e.place.unwrap_or(path.picks[0]) };
+    let parted = Connected::new(embedded.mesh).map_err(pinched)?;
+    let kept = kept_side(&parted, &embedded.curves[0], path.keep)?;
+    let (left, origins) = submesh(&parted, &embedded.origins, &kept);
+    let left = Connected::new(left).map_err(pinched)?;
+    Ok((left, origins, found.cost))
+}
+
+/// Takes away what has a height of zero or more, one height per vertex; what stays, and where it came from.
+pub(crate) fn trim(
+    mesh: &Connected<TriMesh>,
+    heights: &[f64],
+    watch: &Watch,
+) -> Result<(Connected<TriMesh>, Origins), Error> {
+    let section = Section::of_heights(mesh, heights.to_vec());
+    let (left, origins, _) = cut_section(
+        mesh,
+        &section,
+        &PlaneCut { snap: 0.05, ..PlaneCut::new(mesh_core::bounds(mesh).center(), DVec3::Z) },
+        watch,
+    )?;
+    Ok((left, origins))
 }

@@ -23,6 +23,11 @@ impl<'a> Section<'a> {
         Ok(Self { mesh, heights })
     }
 
+    /// A section by heights of any kind.
+    pub(super) const fn of_heights(mesh: &'a Connected<TriMesh>, heights: Vec<f64>) -> Self {
+        Self { mesh, heights }
+    }
+
     /// Signed distance of a vertex from the plane, in model units.
     pub(super) fn height(&self, v: VertexId) -> f64 {
         self.heights.get(v.index()).copied().unwrap_or(0.0)

@@ -1,10 +1,10 @@
 //! What TOML cannot check: names, ranges, order.
 
 use super::rims::split_loop;
-use super::tables::{Part, PartCut};
+use super::tables::{Creases, Depth, Part, PartCut, Plane, Silhouette};
 use super::values::{Length, Pose, profile};
 use super::{Error, Recipe, Step};
-use crate::cut::PlaneCut;
+use crate::cut::{Cut, Keep, PathCut, PlaneCut};
 use crate::{blend, cluster, compose};
 use glam::DVec3;
 use mesh_io::Format;
@@ -61,9 +61,10 @@ impl Recipe {
             names.push(name);
             self.pose(part)?;
             for cut in &part.cut {
-                self.plane(cut)?;
+                self.cut(part, cut)?;
             }
         }
+        self.check_places(&names)?;
         for (i, boolean) in self.boolean.iter().enumerate() {
             self.operation(i)?;
             self.rolling_of_boolean(i, 1.0)?;
@@ -113,18 +114,45 @@ impl Recipe {
         })
     }
 
-    pub(super) fn plane(&self, cut: &PartCut) -> Result<PlaneCut, Error> {
-        let plane = cut.plane.get_ref();
-        let (point, normal) = (DVec3::from(plane.point), DVec3::from(plane.normal));
-        if !point.is_finite() || !normal.is_finite() || normal == DVec3::ZERO {
-            return Err(self.error(cut.plane.span(), "a plane needs a finite point and a normal other than 0, 0, 0"));
+    /// A cut of a part.
+    pub(super) fn cut(&self, part: &Part, cut: &PartCut) -> Result<Cut, Error> {
+        let seed = cut.seed.as_ref().map(|s| DVec3::from(*s.get_ref()));
+        let smooth = cut.smooth.as_ref().map_or(0, |s| usize::from(*s.get_ref()));
+        let snap = |default: f64| cut.snap.as_ref().map_or(Ok(default), |s| self.within(s, 0.0, 0.25));
+        match (&cut.plane, &cut.path) {
+            (Some(plane), None) => {
+                let Plane { point, normal } = *plane.get_ref();
+                let (point, normal) = (DVec3::from(point), DVec3::from(normal));
+                if !point.is_finite() || !normal.is_finite() || normal == DVec3::ZERO {
+                    let message = "a plane needs a finite point and a normal other than 0, 0, 0";
+                    return Err(self.error(plane.span(), message));
+                }
+                let made = PlaneCut::new(point, normal);
+                Ok(PlaneCut { seed, smooth, snap: snap(made.snap)?, ..made }.into())
+            }
+            (None, Some(path)) => {
+                let picks: Vec<DVec3> = path.get_ref().iter().map(|&p| p.into()).collect();
+                if picks.len() < 2 || !picks.iter().all(|p| p.is_finite()) {
+                    return Err(self.error(path.span(), "a path needs two picks or more, in finite numbers"));
+                }
+                let mut made = PathCut { smooth, ..PathCut::new(picks) };
+                made.snap = snap(made.snap)?;
+                made.keep = match (&cut.keep, seed) {
+                    (None, Some(seed)) => Keep::Near(seed),
+                    (None, None) => Keep::Larger,
+                    (Some(k), None) if k.get_ref() == "larger" => Keep::Larger,
+                    (Some(k), None) if k.get_ref() == "smaller" => Keep::Smaller,
+                    (Some(k), _) => {
+                        return Err(self.error(k.span(), "keep is larger or smaller, and goes without a seed"));
+                    }
+                };
+                if let Some(crease) = &cut.crease {
+                    made.crease = self.within(crease, 0.0, 1e3)?;
+                }
+                Ok(made.into())
+            }
+            _ => Err(self.error(part.name.span(), "a cut needs either a plane or a path")),
         }
-        let mut out = PlaneCut::new(point, normal);
-        out.seed = cut.seed.as_ref().map(|s| DVec3::from(*s.get_ref()));
-        if let Some(snap) = &cut.snap {
-            out.snap = self.within(snap, 0.0, 0.25)?;
-        }
-        Ok(out)
     }
 
     pub(super) fn operation(&self, i: usize) -> Result<Operation, Error> {
@@ -165,16 +193,68 @@ impl Recipe {
         if let Some(cell) = &c.cell {
             params.cell = self.within(cell, f64::MIN_POSITIVE, 1e6)?;
         }
-        if let Some(length) = &c.edge_length {
-            let resolved = length.get_ref().resolve(diagonal);
-            params.edge_length = Some(resolved.ok_or_else(|| {
-                self.error(length.span(), "a length is a number above 0, or a share of the diagonal such as \"2%\"")
-            })?);
-        }
+        let length = |text: &Option<Spanned<Length>>| {
+            let resolved = |l: &Spanned<Length>| {
+                let message = "a length is a number above 0, or a share of the diagonal such as \"2%\"";
+                l.get_ref().resolve(diagonal).ok_or_else(|| self.error(l.span(), message))
+            };
+            text.as_ref().map(resolved).transpose()
+        };
+        params.edge_length = length(&c.edge_length)?;
+        params.adjust = length(&c.adjust)?;
         if let Some(space) = &c.space {
             params.space = self.within(space, f64::MIN_POSITIVE, 1e6)?;
         }
+        if let Some(creases) = &c.crease {
+            let all = match creases.get_ref() {
+                Creases::All(angle) => vec![*angle],
+                Creases::Each(each) => each.values().copied().collect(),
+            };
+            if !all.iter().all(|a| (-90.0..=90.0).contains(a)) {
+                return Err(self.error(creases.span(), "a crease is an angle from -90 to 90 degrees"));
+            }
+            if let Creases::All(angle) = creases.get_ref() {
+                params.crease = *angle;
+            }
+        }
+        params.silhouettes = c.silhouette.iter().map(|s| self.silhouette(s)).collect::<Result<_, _>>()?;
         Ok(params)
+    }
+
+    /// A silhouette that a joint shall have.
+    fn silhouette(&self, s: &Silhouette) -> Result<compose::Silhouette, Error> {
+        let finite = |all: &[[f64; 3]]| all.iter().flatten().all(|x| x.is_finite());
+        let view = *s.view.get_ref();
+        if !finite(&[view]) || view == [0.0; 3] {
+            return Err(self.error(s.view.span(), "a view is a direction other than 0, 0, 0"));
+        }
+        let (strokes, span) = match (&s.stroke, &s.strokes) {
+            (Some(one), None) => (vec![one.get_ref().clone()], one.span()),
+            (None, Some(all)) => (all.get_ref().clone(), all.span()),
+            _ => return Err(self.error(s.view.span(), "a silhouette needs either a stroke or strokes")),
+        };
+        if strokes.iter().map(Vec::len).sum::<usize>() < 2 || !strokes.iter().all(|s| finite(s)) {
+            return Err(self.error(span, "a stroke needs two points or more, in finite numbers"));
+        }
+        let control = s.control.as_ref().map(|c| {
+            let fixed = finite(c.get_ref()).then(|| c.get_ref().map(DVec3::from));
+            fixed.ok_or_else(|| self.error(c.span(), "control points are two points in finite numbers"))
+        });
+        let depth = s.depth.as_ref().map_or(Ok([0.0; 2]), |d| {
+            let moves = match *d.get_ref() {
+                Depth::One(x) => [x; 2],
+                Depth::Two(both) => both,
+            };
+            let fixed = moves.iter().all(|x| x.is_finite()).then_some(moves);
+            fixed.ok_or_else(|| self.error(d.span(), "moves along the view are finite numbers"))
+        })?;
+        Ok(compose::Silhouette {
+            view: view.into(),
+            strokes: strokes.into_iter().map(|s| s.into_iter().map(DVec3::from).collect()).collect(),
+            hole: s.hole,
+            control: control.transpose()?,
+            depth,
+        })
     }
 
     /// How the seam of a boolean is blended; `diagonal` is what lengths may be a share of.

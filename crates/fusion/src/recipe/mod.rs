@@ -28,16 +28,23 @@
 //! | `values.rs` | vectors, lengths, poses, profiles |
 //! | `check.rs` | what TOML cannot check: names, ranges |
 //! | `run.rs` | the steps, in order |
+//! | `pose.rs`, `placement.rs`, `snap.rs` | where parts stand: their own poses, primitives, openings that face each other |
 //! | `rims.rs` | openings by the names of the parts they came with |
 //! | `error.rs` | what is wrong with a recipe, by line and key |
 
 mod check;
 mod error;
+mod placement;
+mod pose;
 mod rims;
 mod run;
+mod snap;
 mod tables;
 mod values;
 
 pub use error::Error;
-pub use tables::{Blend, Boolean, Cluster, Compose, Part, PartCut, Plane, Recipe, Step};
+pub use tables::{
+    Blend, Boolean, Cluster, Compose, Creases, Depth, On, Part, PartCut, Plane, Primitive, Radius, Recipe, Silhouette,
+    Snap, Step,
+};
 pub use values::{Length, Rotation};

@@ -1,9 +1,10 @@
 //! The steps of a recipe, in order.
 
 use super::rims::{self, Rims, split_loop};
+use super::tables::{Compose, Creases};
 use super::{Recipe, Step};
 use crate::cluster::cluster;
-use crate::compose::compose;
+use crate::compose::{Crease, compose};
 use crate::cut::{self, cut};
 use crate::features;
 use crate::outcome::{Outcome, Promise, finish_as};
@@ -74,7 +75,7 @@ impl Recipe {
 impl Replay<'_> {
     fn cut(&mut self) -> Result<(), Error> {
         for (i, part) in self.recipe.parts.iter().enumerate().filter(|(_, p)| !p.cut.is_empty()) {
-            let cuts = part.cut.iter().map(|c| self.recipe.plane(c)).collect::<Result<Vec<_>, _>>()?;
+            let cuts = part.cut.iter().map(|c| self.recipe.cut(part, c)).collect::<Result<Vec<_>, _>>()?;
             let params = cut::Params::new(cuts, self.format);
             let model = Model::from(std::mem::take(&mut self.pieces[i].mesh));
             let name = format!("cut of {}", self.pieces[i].name);
@@ -85,8 +86,12 @@ impl Replay<'_> {
     }
 
     fn pose(&mut self) -> Result<(), Error> {
-        for (i, part) in self.recipe.parts.iter().enumerate() {
-            let pose = self.recipe.pose(part)?;
+        let meshes: Vec<&TriMesh> = self.first.iter().map(|m| &m.mesh).collect();
+        // Openings are those of the cut parts, if they have been cut.
+        let pieces = |i: usize| self.pieces.iter().find(|p| p.name == *self.recipe.parts[i].name.get_ref());
+        let cut: Vec<&TriMesh> = (0..meshes.len()).map(|i| pieces(i).map_or(meshes[i], |p| &p.mesh)).collect();
+        let poses = self.recipe.poses(&cut)?;
+        for (i, (part, pose)) in self.recipe.parts.iter().zip(poses).enumerate() {
             self.first[i] = pose.model(std::mem::take(&mut self.first[i]));
             if let Some(piece) = self.pieces.iter_mut().find(|p| p.name == *part.name.get_ref()) {
                 piece.mesh = pose.mesh(std::mem::take(&mut piece.mesh));
@@ -135,6 +140,7 @@ impl Replay<'_> {
                 let place = |w: usize| which.binary_search(&w).unwrap_or(0);
                 params.loops = Some(chosen.iter().map(|&(w, l)| (place(w), l)).collect());
             }
+            params.creases = self.creases(table, &which)?;
             let names: Vec<&str> = which.iter().map(|&w| self.pieces[w].name.as_str()).collect();
             let name = format!("compose of {}", names.join(", "));
             let models = self.models(&which);
@@ -146,6 +152,19 @@ impl Replay<'_> {
             self.name_rims(at);
         }
         Ok(())
+    }
+
+    /// The creases that a join names one by one, its pieces being those in `which`.
+    fn creases(&self, table: &Compose, which: &[usize]) -> Result<Vec<Crease>, Error> {
+        let Some(Creases::Each(each)) = table.crease.as_ref().map(toml::Spanned::get_ref) else { return Ok(vec![]) };
+        let span = table.crease.as_ref().map_or(0..0, toml::Spanned::span);
+        let mut all = vec![];
+        for (name, &angle) in each {
+            for (w, index) in self.loops_of(&toml::Spanned::new(span.clone(), name.clone()))? {
+                all.extend(which.binary_search(&w).ok().map(|part| Crease { part, index, angle }));
+            }
+        }
+        Ok(all)
     }
 
     /// Numbers the loops of pieces from `first` on that go by a new name.

@@ -2,6 +2,7 @@
 
 use super::values::{DVec3Array, Length, Rotation};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toml::Spanned;
 
@@ -18,6 +19,9 @@ pub struct Recipe {
     /// The parts.
     #[serde(default, rename = "part")]
     pub parts: Vec<Part>,
+    /// What parts ride on, by name.
+    #[serde(default, rename = "primitive")]
+    pub primitives: BTreeMap<String, Primitive>,
     /// Booleans.
     #[serde(default)]
     pub boolean: Vec<Boolean>,
@@ -74,21 +78,97 @@ pub struct Part {
     pub rotate: Option<Spanned<Rotation>>,
     /// Scales it about the origin.
     pub scale: Option<Spanned<f64>>,
+    /// Sets it on a primitive, after its own pose.
+    pub on: Option<On>,
+    /// Moves it, last of all, so that one of its openings faces another or a primitive.
+    pub snap: Option<Snap>,
     /// Cuts, in the file's own coordinates.
     #[serde(default)]
     pub cut: Vec<PartCut>,
 }
 
-/// A cut by a plane.
+/// A place on a primitive. What rides there has its origin at the place, its z axis out of the surface, and its x axis along growing u.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct On {
+    /// The primitive's name.
+    pub primitive: Spanned<String>,
+    /// u and v: u from 0 to 1 once round the axis; v from 0 at the base to 1 at the top, on to 2 over the top to its middle, down to −1 over
+    /// the base. On a sphere v goes from pole to pole.
+    pub at: Spanned<[f64; 2]>,
+    /// Turns about the surface's normal, in degrees.
+    pub spin: Option<Spanned<f64>>,
+    /// Moves out of the surface, in model units.
+    pub offset: Option<Spanned<f64>>,
+    /// Of a part: the loop whose middle comes to the place and which faces the surface.
+    #[serde(rename = "loop")]
+    pub opening: Option<usize>,
+}
+
+/// A body that parts ride on, and that is not itself in the model.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Primitive {
+    /// `"box"`, `"cylinder"`, `"sphere"` or `"cone"`.
+    pub shape: Spanned<String>,
+    /// The middle of its base, or of a sphere. The origin where left out.
+    pub base: Option<Spanned<DVec3Array>>,
+    /// From base to top, of any length. Along z where left out.
+    pub axis: Option<Spanned<DVec3Array>>,
+    /// The radius; two for a cone, at the base and at the top. That of `loop` where left out.
+    pub radius: Option<Spanned<Radius>>,
+    /// The height of a cylinder or cone.
+    pub height: Option<Spanned<f64>>,
+    /// The extents of a box, the last along its axis.
+    pub size: Option<Spanned<DVec3Array>>,
+    /// Stands on this opening, `"part:loop"`: base and axis count from its middle, z out of it.
+    #[serde(rename = "loop")]
+    pub opening: Option<Spanned<String>>,
+    /// Stands on another primitive: base and axis count from there.
+    pub on: Option<On>,
+}
+
+/// One radius, or one at the base and one at the top.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(untagged)]
+pub enum Radius {
+    /// One all along.
+    One(f64),
+    /// At the base and at the top.
+    Two([f64; 2]),
+}
+
+/// An alignment of one opening with another.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Snap {
+    /// The part's own loop; its first where left out.
+    #[serde(rename = "loop")]
+    pub opening: Option<usize>,
+    /// `"part:loop"`, or the name of a primitive.
+    pub to: Spanned<String>,
+    /// How far apart they are left; two edges of the other loop where left out, nothing on a primitive.
+    pub gap: Option<Spanned<f64>>,
+}
+
+/// A cut by a plane, or along a path.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartCut {
     /// The plane; what its normal points to is removed.
-    pub plane: Spanned<Plane>,
-    /// Cut only the contour nearest to this point.
+    pub plane: Option<Spanned<Plane>>,
+    /// Picks of a closed path over the surface.
+    pub path: Option<Spanned<Vec<DVec3Array>>>,
+    /// With a plane: cut only the contour nearest to this point. With a path: the side nearest to it stays.
     pub seed: Option<Spanned<DVec3Array>>,
+    /// With a path: which side stays, `"larger"` (the default) or `"smaller"`.
+    pub keep: Option<Spanned<String>>,
+    /// See [`crate::cut::PathCut::crease`].
+    pub crease: Option<Spanned<f64>>,
     /// See [`crate::cut::PlaneCut::snap`].
     pub snap: Option<Spanned<f64>>,
+    /// Rounds of smoothing of the rim.
+    pub smooth: Option<Spanned<u16>>,
 }
 
 /// A plane.
@@ -146,6 +226,51 @@ pub struct Compose {
     pub space: Option<Spanned<f64>>,
     /// What the result is called. The name of the first part joined where left out.
     pub name: Option<Spanned<String>>,
+    /// By how many degrees the surface turns inward at the openings: one number for all, or one for each by name.
+    pub crease: Option<Spanned<Creases>>,
+    /// Trims openings nearer than this to those of other parts.
+    pub adjust: Option<Spanned<Length>>,
+    /// Silhouettes that the surface shall have.
+    #[serde(default)]
+    pub silhouette: Vec<Silhouette>,
+}
+
+/// Creases of a join, in degrees.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+pub enum Creases {
+    /// At every opening.
+    All(f64),
+    /// At the openings named, as in [`Compose::loops`].
+    Each(BTreeMap<String, f64>),
+}
+
+/// A silhouette; see [`crate::compose::Silhouette`].
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Silhouette {
+    /// Direction of the view.
+    pub view: Spanned<DVec3Array>,
+    /// One stroke.
+    pub stroke: Option<Spanned<Vec<DVec3Array>>>,
+    /// Several that are chained.
+    pub strokes: Option<Spanned<Vec<Vec<DVec3Array>>>>,
+    /// Whether they outline a hole.
+    pub hole: Option<bool>,
+    /// Other places for the two middle control points.
+    pub control: Option<Spanned<[DVec3Array; 2]>>,
+    /// Moves of the two along the view; a hole takes one number.
+    pub depth: Option<Spanned<Depth>>,
+}
+
+/// One move along a view, or two.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(untagged)]
+pub enum Depth {
+    /// Everything by as much.
+    One(f64),
+    /// Each of the two middle control points.
+    Two([f64; 2]),
 }
 
 /// A blend along feature curves.

@@ -1,5 +1,6 @@
 //! Values in recipes.
 
+use super::placement::Motion;
 use glam::{DQuat, DVec3};
 use mesh_core::TriMesh;
 use mesh_io::Model;
@@ -61,6 +62,19 @@ impl Pose {
         usable.then_some(Self { scale, rotation, translation })
     }
 
+    /// This pose, and then a motion.
+    pub(super) fn then(self, motion: Motion) -> Self {
+        Self {
+            scale: self.scale,
+            rotation: motion.rotation * self.rotation,
+            translation: motion.point(self.translation),
+        }
+    }
+
+    pub(super) fn point(&self, p: DVec3) -> DVec3 {
+        self.rotation * (self.scale * p) + self.translation
+    }
+
     fn is_identity(&self) -> bool {
         self.scale == 1.0 && self.rotation == DQuat::IDENTITY && self.translation == DVec3::ZERO
     }
@@ -69,7 +83,7 @@ impl Pose {
     pub(super) fn mesh(&self, mut mesh: TriMesh) -> TriMesh {
         if !self.is_identity() {
             for p in &mut mesh.positions {
-                *p = self.rotation * (self.scale * *p) + self.translation;
+                *p = self.point(*p);
             }
         }
         mesh
