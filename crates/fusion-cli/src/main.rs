@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `args.rs`, `rolling.rs`, `clustering.rs`, `length.rs`, `place.rs` | what can be typed |
+//! | `args.rs`, `rolling.rs`, `clustering.rs`, `cutting.rs`, `length.rs`, `place.rs` | what can be typed |
 //! | `failure.rs` | exit codes |
 //! | `session.rs` | one command: reading, progress, messages, writing |
 //! | `output.rs` | files that appear all at once or not at all |
@@ -11,6 +11,7 @@
 
 mod args;
 mod clustering;
+mod cutting;
 mod failure;
 mod length;
 mod output;

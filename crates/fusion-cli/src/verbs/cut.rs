@@ -1,6 +1,6 @@
 //! `cut`: takes away what lies beyond a plane or a path over the surface.
 
-use crate::args::{Cut as Args, Keep as Side};
+use crate::cutting::{Cut as Args, Keep as Side};
 use crate::failure::Failure;
 use crate::session::{Destination, Session, counts};
 use fusion::cut::{Cut, Keep, Params, PathCut, PlaneCut, cut};
