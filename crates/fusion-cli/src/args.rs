@@ -7,6 +7,7 @@ use crate::length::{
 };
 use crate::place::Place;
 use crate::rolling::Rolling;
+use crate::smoothing::Way;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use std::ffi::OsString;
@@ -289,19 +290,24 @@ impl From<Method> for fusion::compose::Method {
 
 #[derive(Args)]
 pub struct Remesh {
-    /// The mesh to remesh
+    /// The mesh to smooth and remesh
     pub input: PathBuf,
     #[command(flatten)]
     pub target: Target,
     #[command(flatten)]
     pub source: Source,
-    /// Wanted edge length
-    #[arg(long, value_name = "L", value_parser = positive_length)]
-    pub edge_length: Length,
+    /// Wanted edge length; without it the triangles stay
+    #[arg(long, value_name = "L", value_parser = positive_length, required_unless_present = "smooth")]
+    pub edge_length: Option<Length>,
+    /// Move the vertices first: taubin or taubin=ROUNDS (keeps the volume), flow=LENGTH (halves waves of this length and
+    /// all but removes shorter ones, shrinking), or harmonic, biharmonic, triharmonic (the region becomes the fairest
+    /// surface that continues what is around it)
+    #[arg(long, value_name = "WAY")]
+    pub smooth: Option<Way>,
     /// Rounds of splitting, collapsing, flipping and relaxing
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub iterations: u16,
-    /// Remesh these faces only: near=X,Y,Z,RADIUS, group=NAME, origin=STAGE, or a file of face ids
+    /// Work on these faces only: near=X,Y,Z,RADIUS, group=NAME, origin=STAGE, or a file of face ids
     #[arg(long, value_name = "REGION", allow_hyphen_values = true)]
     pub region: Option<Place>,
     /// Least angle between the normals of two neighbouring faces that makes their edge a feature; 180 keeps none

@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `args.rs`, `rolling.rs`, `clustering.rs`, `cutting.rs`, `length.rs`, `place.rs` | what can be typed |
+//! | `args.rs`, `rolling.rs`, `clustering.rs`, `cutting.rs`, `smoothing.rs`, `length.rs`, `place.rs` | what can be typed |
 //! | `failure.rs` | exit codes |
 //! | `session.rs` | one command: reading, progress, messages, writing |
 //! | `output.rs` | files that appear all at once or not at all |
@@ -19,6 +19,7 @@ mod place;
 mod progress;
 mod rolling;
 mod session;
+mod smoothing;
 mod verbs;
 
 use args::{Cli, Verb, with_bare_weld};

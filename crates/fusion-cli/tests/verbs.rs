@@ -116,3 +116,31 @@ fn devices_are_written_not_replaced() {
     bench.run("convert a.off -o /dev/null --to ply").expect(0);
     assert!(!fs::metadata("/dev/null").unwrap().is_file());
 }
+
+#[test]
+fn remesh_smooths_with_or_without_new_triangles() {
+    let bench = Bench::new();
+    bench.run("remesh a.off -o fine.off --edge-length 0.1").expect(0);
+    let report = |name: &str| json(&bench.read(name));
+    let all = "remesh fine.off -o round.off --angle 180 --report r.json --smooth";
+    bench.run(&format!("{all} flow=0.5")).expect(0);
+    let round = json(bench.run("info round.off --json").expect(0).text());
+    assert_eq!(report("r.json")["output"]["faces"], round["faces"]);
+    assert!(round["volume"].as_f64().unwrap() < 0.95 && report("r.json")["validity"]["closed"] == true);
+    bench.run(&format!("{all} taubin=20")).expect(0);
+    let kept = json(bench.run("info round.off --json").expect(0).text())["volume"].as_f64().unwrap();
+    assert!((kept - 1.0).abs() < 0.02, "{kept}");
+    // Creases are held unless asked otherwise, and nothing else of a box bends.
+    bench.run("remesh fine.off -o same.off --smooth taubin").expect(0);
+    let same = json(bench.run("info same.off --json").expect(0).text())["volume"].as_f64().unwrap();
+    assert!((same - 1.0).abs() < 1e-12, "{same}");
+    bench
+        .run("remesh fine.off -o cap.off --smooth biharmonic --region near=0.5,0.5,1,0.4 --edge-length 0.05")
+        .expect(0);
+    // A whole surface with nothing held has no fairest shape; a way or a length must be given.
+    let failed = bench.run("remesh fine.off -o none.off --smooth harmonic").expect(4);
+    assert!(failed.stderr.contains("hold"), "{}", failed.stderr);
+    bench.run("remesh fine.off -o none.off").expect(2);
+    bench.run("remesh fine.off -o none.off --smooth laplace").expect(2);
+    assert!(!bench.files().contains(&"none.off".to_string()));
+}

@@ -1,19 +1,24 @@
-//! `remesh`: even triangles, boundaries and features kept.
+//! `remesh`: even triangles and smooth surfaces, boundaries and features kept.
 
 use crate::args::Remesh as Args;
 use crate::failure::Failure;
 use crate::session::{Destination, Session, counts, joint_diagonal};
 use fusion::{remesh, remeshing};
 
-/// Remeshes the input, or a region of it, and writes the result.
+/// Smooths and remeshes the input, or a region of it, and writes the result.
 pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     let destination = Destination::check(&args.target, session)?;
     let model = session.read(&args.input, &args.source)?;
     let models = std::slice::from_ref(&model);
     let diagonal = joint_diagonal(models);
     let region = args.region.as_ref().map(|place| place.resolve(diagonal)).transpose()?;
-    let params = remeshing::Params::new(args.edge_length.resolve(diagonal), destination.format)
+    let start = match args.edge_length {
+        Some(length) => remeshing::Params::new(length.resolve(diagonal), destination.format),
+        None => remeshing::Params::keeping_triangles(destination.format),
+    };
+    let params = start
         .with_rounds(args.iterations.into())
+        .smoothed(args.smooth.map(|way| way.resolve(diagonal)))
         .with_features(args.angle)
         .within(region);
     let name = args.input.display();
