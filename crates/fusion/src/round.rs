@@ -46,7 +46,8 @@ pub fn max_radius(part: &Model, params: &Params, watch: &Watch) -> Result<Limit,
     Ok(blend::max_radius(&mesh, &curves, &params.blend, watch)?)
 }
 
-/// The same for each of `curves` alone; `None` where no radius works, or the curve has more than [`LONGEST`] edges.
+/// The same for each of `curves` alone; `None` where no radius works, and for curves of more than 40 edges or after 400
+/// edges in all: a list is to be made in seconds. Ask for those alone.
 ///
 /// # Errors
 /// [`Error::Cancelled`].
@@ -55,9 +56,17 @@ pub fn max_radius_of_each(
     curves: &[FeatureCurve],
     watch: &Watch,
 ) -> Result<Vec<Option<Limit>>, Error> {
-    let limit = |curve: &FeatureCurve| {
+    let mut edges = 0;
+    let due = |curve: &FeatureCurve| {
+        let own = curve.halfedges.len();
+        let due = own <= LONGEST && edges + own <= ALL;
+        edges += if due { own } else { 0 };
+        due
+    };
+    let due: Vec<bool> = curves.iter().map(due).collect();
+    let limit = |(curve, due): (&FeatureCurve, &bool)| {
         watch.step("radii", 0.0)?;
-        if curve.halfedges.len() > LONGEST {
+        if !due {
             return Ok(None);
         }
         let chain = BlendCurve { halfedges: curve.halfedges.clone(), closed: curve.closed };
@@ -67,11 +76,12 @@ pub fn max_radius_of_each(
             Err(_) => Ok(None),
         }
     };
-    curves.par_iter().map(limit).collect()
+    curves.par_iter().zip(&due).map(limit).collect()
 }
 
-/// A curve of more edges is left out of a list of radii, which is to be made in seconds; ask for it alone.
-pub const LONGEST: usize = 1000;
+/// Most edges of a curve in a list of radii, and of all its curves.
+const LONGEST: usize = 40;
+const ALL: usize = 400;
 
 fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch) -> Result<Outcome, Error> {
     let mut report = Report::new("blend", vec![Counts::of("", &part.mesh)]);
