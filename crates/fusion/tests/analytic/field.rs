@@ -8,7 +8,7 @@ use fusion::blend::Surface;
 use tri_intersect::Operation::{self, Difference, Intersection, Union};
 
 /// Within a hundredth of the radius, or within what the input's own facets make of it: a ball between them is off by up
-/// to twice their sagitta over cos(φ/2).
+/// to twice their sagitta over cos(φ/2), to which the plate adds where the profile is nearly a half circle (the edge of a lens).
 fn check(name: &str, pair: Pair, operation: Operation) {
     let case = Case::new(pair, operation, 4 * COARSE, RADIUS);
     let run = run(&case, |p| p.surface = Surface::Field).unwrap_or_else(|e| panic!("{name}: {e}"));
@@ -17,7 +17,7 @@ fn check(name: &str, pair: Pair, operation: Operation) {
     assert_valid(&run);
     assert!(assert_local(&case, &run) > 0, "{name}: nothing is out of reach");
     assert!(run.blended.fields > 0 && run.blended.strips == 0 && run.blended.shrunk.is_empty(), "{name}");
-    assert!(m.inner[0] <= 0.01 * RADIUS || m.inner_share <= 1.0, "{name}: {m:?}");
+    assert!(m.inner[0] <= 0.01 * RADIUS || m.inner_share <= 1.5, "{name}: {m:?}");
     assert!(m.linkage[0] <= 0.01 * RADIUS || m.linkage_share <= 1.0, "{name}: {m:?}");
 }
 
