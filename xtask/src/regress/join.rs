@@ -81,16 +81,17 @@ pub fn join(parts: &[TriMesh], operation: Operation, radius: Option<f64>) -> Res
     let result = run(parts, operation, radius);
     let milliseconds = 1e3 * start.elapsed().as_secs_f64();
     match result {
-        Ok((mesh, warnings, figures)) => Ok(Joined { mesh, warnings, figures, milliseconds }),
-        Err((reason, place)) => Err(Failure { reason, place, milliseconds }),
+        Ok(done) => Ok(Joined {
+            mesh: done.model.mesh,
+            warnings: [done.report.warnings, done.report.notes].concat(),
+            figures: done.report.figures,
+            milliseconds,
+        }),
+        Err(e) => Err(Failure { reason: e.to_string(), place: e.place(), milliseconds }),
     }
 }
 
-fn run(
-    parts: &[TriMesh],
-    operation: Operation,
-    radius: Option<f64>,
-) -> Result<(TriMesh, Vec<String>, BTreeMap<String, f64>), (String, Option<DVec3>)> {
+fn run(parts: &[TriMesh], operation: Operation, radius: Option<f64>) -> Result<fusion::Outcome, fusion::Error> {
     let models: Vec<_> = parts.iter().cloned().map(Model::from).collect();
     let watch = Watch::default();
     let booleans = |operation: fusion::Operation| {
@@ -103,6 +104,4 @@ fn run(
         Operation::Intersection => booleans(fusion::Operation::Intersection),
         Operation::Compose => compose::compose(&models, &compose::Params::new(Format::Ply), &watch),
     }
-    .map(|o| (o.model.mesh, [o.report.warnings, o.report.notes].concat(), o.report.figures))
-    .map_err(|e| (e.to_string(), e.place()))
 }

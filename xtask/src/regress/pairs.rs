@@ -167,11 +167,11 @@ fn account(joined: &Joined) -> String {
     let mut words = if made.is_empty() { "done".to_string() } else { made.join(" and ") };
     if let Some(places) = many(joined.figure("shrunk_places"), "place") {
         let least = joined.figure("smallest_radius") / joined.figure("radius");
-        words +=
-            &format!("; smaller at {places}, down to {least:.2}, {:.0}% full", 100.0 * joined.figure("full_share"));
+        let full = 100.0 * joined.figure("full_share");
+        let _ = write!(words, "; smaller at {places}, down to {least:.2}, {full:.0}% full");
     }
     for warning in joined.warnings.iter().filter(|w| !w.contains("does not fit near")) {
-        words += &format!("; {warning}");
+        let _ = write!(words, "; {warning}");
     }
     words
 }
