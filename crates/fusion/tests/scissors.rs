@@ -128,6 +128,6 @@ fn picks_of_no_use_are_refused() {
     }
     let torus = shapes::torus(1.0, 0.4, 32, 16);
     let across = vec![DVec3::new(0.6, 0.0, 0.0), DVec3::new(1.0, 0.0, 0.4), DVec3::new(1.0, 0.0, -0.4)];
-    let leak = run(&torus, &PathCut::new(across)).unwrap_err();
+    let leak = run(&torus, &PathCut { crease: 0.0, ..PathCut::new(across) }).unwrap_err();
     assert!(matches!(leak, Failed::Cut(Error::DoesNotSeparate { .. })), "{leak}");
 }

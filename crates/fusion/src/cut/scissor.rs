@@ -8,8 +8,8 @@ use super::Error;
 use super::crease::weights;
 use glam::DVec3;
 use mesh_core::{
-    Adjacency, Connected, FaceId, Faces, FloodParams, HalfedgeId, Positions, Seed, Source, SurfacePoint, TriMesh,
-    Watch, area_vector, flood,
+    Adjacency, Connected, EdgeId, FaceId, Faces, FloodParams, HalfedgeId, Positions, Seed, Source, SurfacePoint,
+    TriMesh, Watch, area_vector, flood,
 };
 use mesh_query::TriBvh;
 use std::cmp::Reverse;
@@ -23,7 +23,7 @@ const MARGIN: f64 = 0.02;
 /// How deep in a triangle a pick is, as a barycentric coordinate.
 const DEPTH: f64 = 0.05;
 /// A loop with a smaller share of a disc's area for its length runs back beside itself.
-const OPEN: f64 = 0.3;
+const OPEN: f64 = 0.9;
 /// How much dearer the way beside earlier legs is made then.
 const AVERSION: f64 = 8.0;
 /// Most rounds of sliding.
@@ -65,7 +65,11 @@ pub(super) fn closed_path(
     // The search is greedy from leg to leg; a geodesic may pass better between the legs before it, and may slide on.
     judge.slide(&mut found[1].0);
     let costs = [judge.cost(&found[0].0), judge.cost(&found[1].0)];
-    let best = usize::from(found[1].1 && (!found[0].1 || costs[1] < costs[0]));
+    let best = match [found[0].1, found[1].1] {
+        [true, false] => 0,
+        [false, true] => 1,
+        _ => usize::from(costs[1] < costs[0]),
+    };
     let points = found[best].0.iter().map(Stop::address).collect();
     Ok(Scissored { curve: SurfaceCurve { points, closed: true }, cost: [costs[best], geodesic] })
 }
@@ -188,8 +192,11 @@ impl Scissors<'_> {
     }
 
     /// 4π·area / length² of the smaller side of a closed path: at least about 1 round a limb, hardly anything where the path runs back beside
-    /// itself.
+    /// itself. Infinite where the path parts nothing, as round a handle.
     fn openness(&self, path: &[Stop]) -> f64 {
+        if !self.parts(path) {
+            return f64::INFINITY;
+        }
         let mut seen = vec![false; self.mesh.face_count()];
         for &stop in path {
             mark(&mut seen, self.mesh, stop);
@@ -214,6 +221,45 @@ impl Scissors<'_> {
         let places: Vec<DVec3> = path.iter().map(|&s| self.place(s).0).collect();
         let length: f64 = (0..places.len()).map(|i| places[i].distance(places[(i + 1) % places.len()])).sum();
         4.0 * std::f64::consts::PI * (all - largest) / (length * length)
+    }
+
+    /// Whether no way along edges leads from the left of a closed path to its right without crossing it.
+    fn parts(&self, path: &[Stop]) -> bool {
+        let mut crossed: Vec<EdgeId> = vec![];
+        let (mut left, mut right) = (vec![], vec![false; self.mesh.vertex_count()]);
+        for (i, stop) in path.iter().enumerate() {
+            let Stop::Crossing(h, _) = *stop else { continue };
+            crossed.push(self.mesh.edge(h));
+            // The path goes on into the face of `h` if what comes next is there; then the tail of `h` is on its left.
+            let onward = match path[(i + 1) % path.len()] {
+                Stop::Pick(face, _) => face == h.face(),
+                Stop::Crossing(g, _) => {
+                    [Some(g), self.mesh.twin(g)].into_iter().flatten().any(|g| g.face() == h.face())
+                }
+            };
+            let ends = [self.mesh.tail(h), self.mesh.head(h)];
+            let [l, r] = if onward { [ends[0], ends[1]] } else { [ends[1], ends[0]] };
+            left.push(l);
+            right[r.index()] = true;
+        }
+        crossed.sort_unstable();
+        let mut seen = vec![false; self.mesh.vertex_count()];
+        while let Some(v) = left.pop() {
+            if std::mem::replace(&mut seen[v.index()], true) {
+                continue;
+            }
+            if right[v.index()] {
+                return false;
+            }
+            for h in self.mesh.ring(v) {
+                for (h, w) in [(h, self.mesh.head(h)), (h.prev(), self.mesh.tail(h.prev()))] {
+                    if crossed.binary_search(&self.mesh.edge(h)).is_err() {
+                        left.push(w);
+                    }
+                }
+            }
+        }
+        true
     }
 
     /// The crossings of the cheapest way from one stop to the next, through faces that are not blocked.
