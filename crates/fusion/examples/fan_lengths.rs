@@ -7,13 +7,14 @@ use fusion::mesh_core::{Connected, FaceMap, Faces, VertexId, Watch, bounds};
 use fusion::render;
 use glam::DVec3;
 use std::error::Error;
+use std::path::Path;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().collect();
     let [_, path, place, prefix] = &arguments[..] else { return Err("MESH X,Y,Z PREFIX".into()) };
     let numbers: Vec<f64> = place.split(',').map(str::parse).collect::<Result<_, _>>()?;
     let at = DVec3::new(numbers[0], numbers[1], numbers[2]);
-    let mesh = Connected::new(mesh_io::read(path)?.mesh)?;
+    let mesh = Connected::new(mesh_io::read(Path::new(path))?.mesh)?;
     let diagonal = bounds(&mesh).diagonal();
     let watch = Watch::default();
     let all = FaceMap::filled(mesh.face_count(), true);
