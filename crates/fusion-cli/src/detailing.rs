@@ -80,7 +80,7 @@ impl FromStr for Fan {
         match text {
             "diagonal" => Ok(Self::Diagonal),
             "edges" => Ok(Self::Edges),
-            _ => positive_length(text).map(Self::Length).map_err(|e| e.to_string()),
+            _ => positive_length(text).map(Self::Length),
         }
     }
 }
@@ -98,7 +98,7 @@ impl FromStr for SourcePlace {
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         // A file's name may hold colons; the region begins after the last one that one of its kinds follows.
         let begins = |rest: &str| ["near=", "group=", "origin="].iter().any(|k| rest.starts_with(k));
-        let split = text.match_indices(':').map(|(i, _)| i).filter(|&i| i > 0 && begins(&text[i + 1..])).last();
+        let split = text.match_indices(':').map(|(i, _)| i).rfind(|&i| i > 0 && begins(&text[i + 1..]));
         match split {
             Some(i) => Ok(Self { file: Some(text[..i].into()), place: text[i + 1..].parse()? }),
             None => Ok(Self { file: None, place: text.parse()? }),
