@@ -6,6 +6,7 @@ use crate::place::Place;
 use clap::{Args, ValueEnum};
 use fusion::detail_transfer::{self, FanLength, Ribbon, Search};
 use glam::DVec3;
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -31,11 +32,11 @@ pub struct Detail {
 #[derive(Args)]
 pub struct How {
     /// Continue detail patch by patch along this curve, which leads from detail into the target, before all else
-    #[arg(long, value_name = "X,Y,Z", num_args = 2.., value_parser = point, allow_hyphen_values = true)]
-    pub along: Vec<DVec3>,
+    #[arg(long, value_name = "X,Y,Z X,Y,Z ...", allow_hyphen_values = true)]
+    pub along: Option<Curve>,
     /// The curve on the source, where that is another mesh [default: that of --along]
-    #[arg(long, value_name = "X,Y,Z", num_args = 2.., value_parser = point, allow_hyphen_values = true, requires = "along")]
-    pub source_along: Vec<DVec3>,
+    #[arg(long, value_name = "X,Y,Z X,Y,Z ...", allow_hyphen_values = true, requires = "along")]
+    pub source_along: Option<Curve>,
     /// Width of the band along the curve [default: the whole target]
     #[arg(long, value_name = "L", value_parser = positive_length, requires = "along")]
     pub width: Option<Length>,
@@ -54,6 +55,38 @@ pub struct How {
     /// How the most similar place is searched for; both find the same
     #[arg(long, value_enum, default_value = "indexed")]
     pub search: Finding,
+}
+
+/// Two points or more, apart by spaces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve(pub Vec<DVec3>);
+
+impl FromStr for Curve {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let points = text.split_whitespace().map(point).collect::<Result<Vec<_>, _>>()?;
+        if points.len() < 2 { Err("a curve is two points or more".into()) } else { Ok(Self(points)) }
+    }
+}
+
+/// Gathers the points after `--along` and `--source-along` into one argument each: a point may begin with a minus, as an option does.
+pub fn with_curves(arguments: Vec<OsString>) -> Vec<OsString> {
+    let is_point = |a: &OsString| a.to_str().is_some_and(|a| point(a).is_ok());
+    let mut out = vec![];
+    let mut rest = arguments.into_iter().peekable();
+    while let Some(argument) = rest.next() {
+        let takes_points = argument == "--along" || argument == "--source-along";
+        out.push(argument);
+        let mut points = vec![];
+        while takes_points && rest.peek().is_some_and(is_point) {
+            points.extend(rest.next().and_then(|p| p.into_string().ok()));
+        }
+        if !points.is_empty() {
+            out.push(points.join(" ").into());
+        }
+    }
+    out
 }
 
 /// How similar places are searched for.
@@ -132,9 +165,9 @@ fn factor(text: &str) -> Result<f64, String> {
 impl How {
     /// With lengths in model units.
     pub fn resolve(&self, diagonal: f64) -> detail_transfer::Params {
-        let ribbon = (!self.along.is_empty()).then(|| Ribbon {
-            curve: self.along.clone(),
-            source_curve: (!self.source_along.is_empty()).then(|| self.source_along.clone()),
+        let ribbon = self.along.as_ref().map(|curve| Ribbon {
+            curve: curve.0.clone(),
+            source_curve: self.source_along.as_ref().map(|c| c.0.clone()),
             width: self.width.map(|l| l.resolve(diagonal)),
             spacing: self.spacing.map(|l| l.resolve(diagonal)),
         });
@@ -167,6 +200,15 @@ mod tests {
         assert_eq!(place("a:b.off:group=x:y").file, Some("a:b.off".into()));
         assert_eq!(place("a.off:near=1,2,3,5%").place, "near=1,2,3,5%".parse().unwrap());
         assert!("a.off:near=1,2".parse::<SourcePlace>().is_err());
+    }
+
+    #[test]
+    fn curves_are_gathered() {
+        let typed = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
+        let found = with_curves(typed("detail a --along -1,0,0 1,0,0 -o b"));
+        assert_eq!(found, ["detail", "a", "--along", "-1,0,0 1,0,0", "-o", "b"].map(OsString::from));
+        assert_eq!("-1,0,0 1,0,0".parse(), Ok(Curve(vec![DVec3::NEG_X, DVec3::X])));
+        assert!("1,0,0".parse::<Curve>().is_err());
     }
 
     #[test]

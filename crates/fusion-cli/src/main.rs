@@ -25,13 +25,14 @@ mod verbs;
 
 use args::{Cli, Verb, with_bare_weld};
 use clap::Parser;
+use detailing::with_curves;
 use failure::Failure;
 use fusion::Operation;
 use session::Session;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse_from(with_bare_weld(std::env::args_os()));
+    let cli = Cli::parse_from(with_curves(with_bare_weld(std::env::args_os())));
     match run(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),

@@ -56,12 +56,14 @@ fn a_smooth_region_gets_detail_from_its_own_mesh_or_another() {
         let figure = |name: &str| report["figures"][name].as_f64().unwrap();
         assert!(figure("roughness_before") < figure("roughness"), "{options}");
         let ratio = figure("roughness") / figure("roughness_source");
-        assert!((0.6..1.6).contains(&ratio), "{options}: {ratio}");
+        assert!((0.4..1.6).contains(&ratio), "{options}: {ratio}");
         assert_eq!(report["validity"]["self_intersections"], 0);
         // All but the moved vertices are there to the last digit.
         let (before, after) = (bench.read("holed.off"), bench.read("out.off"));
-        let moved = before.lines().zip(after.lines()).filter(|(a, b)| a != b).count();
-        assert!(moved as f64 <= figure("filled") + 1.0 && moved > 100, "{options}: {moved}");
+        let numbers = |line: &str| line.split(' ').map(|x| x.parse::<f64>().unwrap()).collect::<Vec<_>>();
+        let vertices = before.lines().zip(after.lines()).skip(2).take(3721);
+        let moved = vertices.filter(|(a, b)| numbers(a) != numbers(b)).count();
+        assert!(moved as f64 <= figure("filled") && moved > 100, "{options}: {moved}");
         assert_eq!(report["kept_vertices"].as_f64().unwrap() + figure("filled"), 3721.0);
         assert_eq!(json(&bench.read("o.json"))["vertices"].as_array().unwrap().len(), 3721);
     }
