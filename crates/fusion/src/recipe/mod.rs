@@ -46,7 +46,7 @@ mod values;
 
 pub use error::Error;
 pub use tables::{
-    Blend, Boolean, Cluster, Compose, Creases, Depth, Detail, DetailRegion, DetailRegions, On, Part, PartCut, Plane, Primitive, Radius, Recipe,
-    Silhouette, Snap, Step,
+    Blend, Boolean, Cluster, Compose, Creases, Depth, Detail, DetailRegion, DetailRegions, On, Part, PartCut, Plane,
+    Primitive, Radius, Recipe, Silhouette, Snap, Step,
 };
 pub use values::{Length, Rotation};
