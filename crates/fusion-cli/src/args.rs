@@ -2,6 +2,7 @@
 
 use crate::clustering::Cluster;
 use crate::cutting::{Cut, spread_path};
+use crate::detailing::{Detail, PartPlace};
 use crate::length::{
     Length, Radius, angle, angle_or_none, crease, direction, mesh_and_loop, point, positive_length, radius, share,
 };
@@ -69,6 +70,8 @@ pub enum Verb {
     Blend(Blend),
     /// Join the openings of parts by one smooth surface, leaving the parts as they are
     Compose(Compose),
+    /// Give a smooth region the geometry detail of another
+    Detail(Detail),
     /// Round a polyhedron: one patch for each cluster of its edges, in contact with the faces around
     Cluster(Cluster),
     /// Make triangles even; boundaries and features are kept
@@ -244,6 +247,9 @@ pub struct Compose {
     /// Trim openings nearer than this to one of another part back along their own part
     #[arg(long, value_name = "DISTANCE", value_parser = positive_length)]
     pub adjust: Option<Length>,
+    /// Give the surface the geometry detail of a region of a part: MESH:REGION, counted from 0; may be given more than once
+    #[arg(long = "detail", value_name = "MESH:REGION", allow_hyphen_values = true)]
+    pub details: Vec<PartPlace>,
     /// How far from the openings the surface may go, in diagonals of the box around them
     #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = share)]
     pub space: f64,

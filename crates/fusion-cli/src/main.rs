@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `args.rs`, `rolling.rs`, `clustering.rs`, `cutting.rs`, `smoothing.rs`, `length.rs`, `place.rs` | what can be typed |
+//! | `args.rs`, `rolling.rs`, `clustering.rs`, `cutting.rs`, `detailing.rs`, `smoothing.rs`, `length.rs`, `place.rs` | what can be typed |
 //! | `failure.rs` | exit codes |
 //! | `session.rs` | one command: reading, progress, messages, writing |
 //! | `output.rs` | files that appear all at once or not at all |
@@ -12,6 +12,7 @@
 mod args;
 mod clustering;
 mod cutting;
+mod detailing;
 mod failure;
 mod length;
 mod output;
@@ -24,13 +25,14 @@ mod verbs;
 
 use args::{Cli, Verb, with_bare_weld};
 use clap::Parser;
+use detailing::with_curves;
 use failure::Failure;
 use fusion::Operation;
 use session::Session;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse_from(with_bare_weld(std::env::args_os()));
+    let cli = Cli::parse_from(with_curves(with_bare_weld(std::env::args_os())));
     match run(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
@@ -58,6 +60,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Verb::Run(args) => verbs::run::run(&session, &args),
         Verb::Render(args) => verbs::render::run(&session, &args),
         Verb::Demo(args) => verbs::demo::run(&session, &args),
+        Verb::Detail(args) => verbs::detail::run(&session, &args),
         Verb::Cluster(args) => verbs::cluster::run(&session, &args),
         Verb::Blend(args) => verbs::blend::run(&session, &args),
     }

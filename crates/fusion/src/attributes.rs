@@ -1,5 +1,7 @@
 //! Carries texture coordinates, normals, colours, groups and materials from the inputs of a job to its result.
 
+use crate::compose::TRANSITION;
+use crate::spread::spread;
 use glam::{DVec3, DVec4};
 use mesh_core::{CornerMap, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, TriMesh, VertexOrigin};
 use mesh_io::{Groups, Material, Materials, Model};
@@ -8,7 +10,7 @@ use mesh_io::{Groups, Material, Materials, Model};
 ///
 /// Corners of whole faces keep their values; corners of pieces get the parent face's values interpolated at their
 /// place. New faces have no texture coordinates, normals and colours (NaN), no material, and a group named after the
-/// stage that made them. An attribute that no input has stays away.
+/// stage that made them; but a composition's transition has colours, blended from the parts that it joins. An attribute that no input has stays away.
 pub fn carry(inputs: &[Model], mesh: TriMesh, origins: &Origins) -> Model {
     let corners = Corners { inputs, mesh: &mesh, origins };
     let uvs = inputs
@@ -22,7 +24,11 @@ pub fn carry(inputs: &[Model], mesh: TriMesh, origins: &Origins) -> Model {
     let colors = inputs
         .iter()
         .any(|m| m.colors.is_some())
-        .then(|| corners.map(|m, h| m.colors.as_ref().map(|a| a[h].into()), |v| v.to_array()));
+        .then(|| corners.map(|m, h| m.colors.as_ref().map(|a| a[h].into()), |v| v.to_array()))
+        .map(|mut colors| {
+            spread(&mesh, &mut colors, |f| origins.faces[f] == FaceOrigin::New { stage: TRANSITION });
+            colors
+        });
     let groups = inputs.iter().any(|m| m.groups.is_some()).then(|| {
         let (of_face, names) = labels(origins, String::new(), |origin| match origin {
             Ok((part, face)) => inputs.get(part)?.groups.as_ref().map(|g| g.names[g.of_face[face] as usize].clone()),
@@ -182,5 +188,29 @@ mod tests {
         let carried = carry(&[painted, plain], TriMesh::from_arrays(vec![DVec3::ZERO; 3], [[0, 1, 2]]), &origins);
         assert!(carried.uvs.unwrap()[HalfedgeId(0)][0].is_nan());
         assert_eq!(carried.groups.unwrap().names, [""]);
+    }
+
+    /// Between a red part and a blue one the transition's colours run from one to the other.
+    #[test]
+    fn a_transition_blends_the_colours_of_its_parts() {
+        let mesh = shapes::open_cylinder(1.0, 3.0, 16, 12);
+        let mut model = Model::from(mesh.clone());
+        let middle = |f: FaceId| mesh.triangle(f).iter().sum::<DVec3>().z / 3.0;
+        let (low, high) = mesh.face_ids().map(middle).fold((f64::MAX, f64::MIN), |(a, b), z| (a.min(z), b.max(z)));
+        let share = |z: f64| (z - low) / (high - low);
+        let color = |f: FaceId| if share(middle(f)) < 0.5 { [1.0, 0.0, 0.0, 1.0] } else { [0.0, 0.0, 1.0, 1.0] };
+        model.colors = Some(mesh.face_ids().flat_map(|f| [color(f); 3]).collect::<Vec<_>>().into());
+        let mut origins = Origins::identity(0, mesh.vertex_count(), mesh.face_count());
+        for f in mesh.face_ids().filter(|&f| (0.3..0.7).contains(&share(middle(f)))) {
+            origins.faces[f] = FaceOrigin::New { stage: TRANSITION };
+        }
+        let colors = carry(&[model], mesh.clone(), &origins).colors.unwrap();
+        for f in mesh.face_ids().filter(|&f| origins.faces[f] == FaceOrigin::New { stage: TRANSITION }) {
+            let [red, green, blue, alpha] = colors[HalfedgeId::new(f, 0)];
+            assert!((red + blue - 1.0).abs() < 1e-12 && green == 0.0 && (alpha - 1.0).abs() < 1e-12);
+            assert!((blue - share(middle(f))).abs() < 0.45, "{blue} {}", share(middle(f)));
+            let (above, below) = (share(middle(f)) > 0.6, share(middle(f)) < 0.4);
+            assert!(if above { blue > 0.5 } else { !below || red > 0.5 });
+        }
     }
 }

@@ -42,6 +42,9 @@ pub enum Error {
     /// A polyhedron cannot be blended by clusters as asked.
     #[error(transparent)]
     Cluster(#[from] edge_cluster::Error),
+    /// Detail cannot be carried.
+    #[error(transparent)]
+    Detail(#[from] detail_transfer::Error),
     /// A region is not there.
     #[error("{0}")]
     Region(String),
@@ -95,6 +98,7 @@ impl Error {
             },
             Self::Cluster(error) => error.place(),
             Self::Cut(error) => error.place(),
+            Self::Detail(error) => error.place(),
             Self::Step { source, .. } => source.place(),
             Self::Invalid(invalid) => invalid.at,
             Self::Compose(error) => error.place(),
@@ -134,6 +138,7 @@ impl Error {
                 | Self::Blend(blend::Error::Cancelled(_))
                 | Self::Cluster(edge_cluster::Error::Cancelled(_))
                 | Self::Remesh(remesh::Error::Cancelled(_))
+                | Self::Detail(detail_transfer::Error::Cancelled(_))
                 | Self::Boolean { source: B::Cancelled(_), .. }
         ) || matches!(self, Self::Compose(error) if error.is_cancelled())
             || matches!(self, Self::Cut(error) if error.is_cancelled())

@@ -19,6 +19,7 @@
 //! | `cut/` | cuts by planes |
 //! | `blend/` | rolling-ball blends of closed curves |
 //! | `cluster/` | polyhedra rounded cluster by cluster |
+//! | `detail.rs` | geometry detail from region to region |
 //! | `recipe/` | whole models as TOML files |
 //! | `outcome.rs`, `validity.rs`, `error.rs` | how every pipeline ends |
 //! | `remeshing.rs`, `region.rs` | remeshing of a surface or a region of it; regions |
@@ -26,7 +27,7 @@
 //! | `info.rs` | counts, measures and defects of one mesh |
 //! | `features.rs` | feature curves by dihedral angle |
 //! | `picks.rs` | curves through picked points |
-//! | `attributes.rs` | attributes carried from inputs to the result |
+//! | `attributes.rs`, `spread.rs` | attributes carried from inputs to the result, colours blended over new surfaces |
 //! | `profile_file.rs` | cross-sections read from files |
 //! | `palette.rs` | which colour shows what a face comes from |
 //! | `report.rs`, `origins_json.rs` | the account of a job, as files |
@@ -36,6 +37,7 @@ pub mod blend;
 pub mod cluster;
 pub mod compose;
 pub mod cut;
+pub mod detail;
 mod error;
 pub mod features;
 mod info;
@@ -51,10 +53,12 @@ pub mod remeshing;
 mod repair;
 mod report;
 pub mod round;
+mod spread;
 mod validity;
 
 pub use attributes::carry;
 pub use cut::cut;
+pub use detail_transfer;
 pub use error::Error;
 pub use info::{Defect, Info, Loop};
 pub use join::join;

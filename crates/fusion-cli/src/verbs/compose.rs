@@ -4,6 +4,7 @@ use crate::args::Compose as Args;
 use crate::failure::Failure;
 use crate::session::{Destination, Session, counts, joint_diagonal};
 use fusion::compose::{self, compose};
+use fusion::{Region, detail};
 
 /// Composes the inputs and writes the result.
 pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
@@ -23,6 +24,16 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         ..compose::Params::new(destination.format)
     };
     let mut outcome = compose(&models, &params, session.watch()).map_err(|e| explain(&e, args))?;
+    if !args.details.is_empty() {
+        let sources = args.details.iter().map(|d| Ok((d.part, d.place.resolve(diagonal)?)));
+        let params = detail::Params {
+            target: Region::Origin(String::new()),
+            sources: sources.collect::<Result<_, Failure>>()?,
+            transfer: fusion::detail_transfer::Params::default(),
+            format: destination.format,
+        };
+        outcome = detail::onto(outcome, &models, &params, session.watch()).map_err(|e| explain(&e, args))?;
+    }
     outcome.report.inputs = counts(&args.inputs, &models);
     for warning in &mut outcome.report.warnings {
         *warning = with_names(warning, args);

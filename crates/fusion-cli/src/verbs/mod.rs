@@ -6,6 +6,7 @@ pub mod compose;
 pub mod convert;
 pub mod cut;
 pub mod demo;
+pub mod detail;
 pub mod features;
 pub mod info;
 pub mod join;

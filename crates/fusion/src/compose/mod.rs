@@ -23,6 +23,7 @@ mod weld;
 
 pub use error::Error;
 pub use silhouette::{Silhouette, SilhouetteCurve, SilhouettePoint};
+pub(crate) use weld::TRANSITION;
 
 use crate::outcome::{Outcome, Promise, finish_as};
 use crate::{Counts, Report};
@@ -30,8 +31,8 @@ use adjust::adjust;
 use constraints::{constraints, fitting};
 use glam::DVec3;
 use lead::lead;
-use mesh_core::{Bounds, Connected, Origins, TriMesh, Watch, bounds};
-use mesh_io::{Format, Model};
+use mesh_core::{Bounds, Connected, FaceOrigin, Origins, TriMesh, Watch, bounds};
+use mesh_io::{Format, Groups, Model};
 use openings::{Opening, check_pose, mean_edge, openings};
 use rbf_solve::Field;
 use surface::{split_chords, surface};
@@ -241,13 +242,24 @@ fn attempt(
     check_pieces(meshes, openings, &made, &mut report)?;
     let Welded { mesh, origins } = report.time("weld", || weld(meshes, own, openings, &made));
     let promise = if params.loops.is_none() { Promise::Closed } else { Promise::Manifold };
-    finish_as(promise, parts, mesh.clone(), origins.clone(), params.format, report, watch).map_err(|e| match e {
+    let finished = finish_as(promise, parts, mesh.clone(), origins.clone(), params.format, report, watch);
+    finished.map(|outcome| named(outcome, params.format)).map_err(|e| match e {
         crate::Error::Invalid(invalid) if invalid.format.is_none() => match name_crossing(&mesh, &origins, watch) {
             Some(crossing) => crossing.into(),
             None => invalid.into(),
         },
         e => e,
     })
+}
+
+/// With a group for the transition where no part has groups. In OBJ only: other formats would take the surface apart by its groups.
+fn named(mut outcome: Outcome, format: Format) -> Outcome {
+    if format == Format::Obj && outcome.model.groups.is_none() {
+        let is_new = |o: &FaceOrigin| u32::from(matches!(o, FaceOrigin::New { .. }));
+        let of_face = outcome.origins.faces.as_slice().iter().map(is_new).collect::<Vec<_>>().into();
+        outcome.model.groups = Some(Groups { of_face, names: [String::new(), TRANSITION.into()].into() });
+    }
+    outcome
 }
 
 fn connect(parts: &[Model]) -> Result<Vec<Connected<TriMesh>>, crate::Error> {

@@ -10,7 +10,8 @@ use mesh_core::{
 use std::collections::BTreeSet;
 use tri_intersect::self_intersections_among;
 
-const STAGE: &str = "compose";
+/// What the surface is called in origins and groups.
+pub(crate) const TRANSITION: &str = "transition";
 
 /// The composed mesh.
 pub(super) struct Welded {
@@ -49,11 +50,11 @@ pub(super) fn weld(
     for &p in &surface.mesh.positions[ids.len()..] {
         ids.push(VertexId::from(mesh.positions.len()));
         mesh.positions.push(p);
-        origins.vertices.push(VertexOrigin::New { stage: STAGE });
+        origins.vertices.push(VertexOrigin::New { stage: TRANSITION });
     }
     for face in &surface.mesh.faces {
         mesh.faces.push(face.map(|v| ids[v.index()]));
-        origins.faces.push(FaceOrigin::New { stage: STAGE });
+        origins.faces.push(FaceOrigin::New { stage: TRANSITION });
     }
     Welded { mesh, origins }
 }

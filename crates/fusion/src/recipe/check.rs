@@ -89,6 +89,17 @@ impl Recipe {
         for i in 0..self.cluster.len() {
             self.clustering(i, Format::Off)?;
         }
+        for table in &self.detail {
+            let (target, sources, _) = self.detailing(table, 1.0)?;
+            let span = table.target.as_ref().map_or(table.source.span(), Spanned::span);
+            let parts: Vec<&str> = self.parts.iter().map(|p| p.name.get_ref().as_str()).collect();
+            let named = sources.iter().map(|s| (s, table.source.span(), &parts)).chain([(&target, span, &names)]);
+            for ((part, _), span, known) in named {
+                if let Some(part) = part.as_ref().filter(|p| !known.contains(&p.as_str())) {
+                    return Err(self.error(span, format!("there is no part `{part}`, only {}", known.join(", "))));
+                }
+            }
+        }
         let used = self.boolean.iter().flat_map(|b| b.parts.iter().flatten());
         let used = used.chain(self.blend.iter().filter_map(|b| b.part.as_ref()));
         for name in used.chain(self.cluster.iter().filter_map(|c| c.part.as_ref())) {

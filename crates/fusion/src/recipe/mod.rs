@@ -29,10 +29,12 @@
 //! | `check.rs` | what TOML cannot check: names, ranges |
 //! | `run.rs` | the steps, in order |
 //! | `pose.rs`, `placement.rs`, `snap.rs` | where parts stand: their own poses, primitives, openings that face each other |
+//! | `details.rs` | the steps of geometry detail |
 //! | `rims.rs` | openings by the names of the parts they came with |
 //! | `error.rs` | what is wrong with a recipe, by line and key |
 
 mod check;
+mod details;
 mod error;
 mod placement;
 mod pose;
@@ -44,7 +46,7 @@ mod values;
 
 pub use error::Error;
 pub use tables::{
-    Blend, Boolean, Cluster, Compose, Creases, Depth, On, Part, PartCut, Plane, Primitive, Radius, Recipe, Silhouette,
-    Snap, Step,
+    Blend, Boolean, Cluster, Compose, Creases, Depth, Detail, DetailRegion, DetailRegions, On, Part, PartCut, Plane,
+    Primitive, Radius, Recipe, Silhouette, Snap, Step,
 };
 pub use values::{Length, Rotation};

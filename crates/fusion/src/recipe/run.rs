@@ -14,24 +14,24 @@ use mesh_core::{Bounds, Faces, Origins, Stage, TriMesh, Watch, bounds};
 use mesh_io::{Format, Model};
 
 /// A part on its way.
-struct Piece {
-    name: String,
-    mesh: TriMesh,
+pub(super) struct Piece {
+    pub(super) name: String,
+    pub(super) mesh: TriMesh,
     /// With respect to the recipe's parts.
-    origins: Origins,
+    pub(super) origins: Origins,
 }
 
 /// A recipe being replayed.
-struct Replay<'a> {
-    recipe: &'a Recipe,
+pub(super) struct Replay<'a> {
+    pub(super) recipe: &'a Recipe,
     /// The parts as they came, posed once the poses have been taken: what origins and attributes refer to.
-    first: Vec<Model>,
-    pieces: Vec<Piece>,
+    pub(super) first: Vec<Model>,
+    pub(super) pieces: Vec<Piece>,
     /// The loops that parts and results had when they were named.
     rims: Vec<Rims>,
-    format: Format,
+    pub(super) format: Format,
     report: Report,
-    watch: &'a Watch,
+    pub(super) watch: &'a Watch,
 }
 
 impl Recipe {
@@ -65,6 +65,7 @@ impl Recipe {
                 Step::Compose => replay.composes()?,
                 Step::Blend => replay.blends()?,
                 Step::Cluster => replay.clusters()?,
+                Step::Detail => replay.details()?,
                 Step::Output => {}
             }
         }
@@ -251,7 +252,7 @@ impl Replay<'_> {
     }
 
     /// Puts a step's result in the place of the pieces it was made of; gives its place.
-    fn take_up(&mut self, which: &[usize], models: &[Model], name: &str, outcome: Outcome) -> usize {
+    pub(super) fn take_up(&mut self, which: &[usize], models: &[Model], name: &str, outcome: Outcome) -> usize {
         let inputs: Vec<&dyn Faces> = self.first.iter().map(|m| &m.mesh as &dyn Faces).collect();
         let stages: Vec<Stage<'_>> = which
             .iter()
@@ -287,7 +288,7 @@ impl Replay<'_> {
         })
     }
 
-    fn only(&self, remedy: &str) -> Result<usize, Error> {
+    pub(super) fn only(&self, remedy: &str) -> Result<usize, Error> {
         if self.pieces.len() == 1 {
             return Ok(0);
         }
@@ -296,12 +297,12 @@ impl Replay<'_> {
     }
 
     /// The diagonal of the box around all pieces, in model units.
-    fn diagonal(&self) -> f64 {
+    pub(super) fn diagonal(&self) -> f64 {
         self.pieces.iter().map(|p| bounds(&p.mesh)).fold(Bounds::EMPTY, Bounds::union).diagonal()
     }
 }
 
-fn step(name: &str, source: Error) -> Error {
+pub(super) fn step(name: &str, source: Error) -> Error {
     Error::Step { name: name.into(), source: Box::new(source) }
 }
 

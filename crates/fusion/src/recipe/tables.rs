@@ -14,7 +14,7 @@ pub struct Recipe {
     pub version: Spanned<u32>,
     /// Where the result goes, relative to the recipe.
     pub output: PathBuf,
-    /// The kinds of steps in another order than cut, pose, boolean, compose, blend, cluster. Kinds left out are not taken.
+    /// The kinds of steps in another order than cut, pose, boolean, compose, blend, cluster, detail. Kinds left out are not taken.
     pub steps: Option<Vec<Spanned<Step>>>,
     /// The parts.
     #[serde(default, rename = "part")]
@@ -34,6 +34,9 @@ pub struct Recipe {
     /// Polyhedra rounded by clusters.
     #[serde(default)]
     pub cluster: Vec<Cluster>,
+    /// Geometry detail for smooth regions.
+    #[serde(default)]
+    pub detail: Vec<Detail>,
     /// The recipe as written, for messages.
     #[serde(skip)]
     pub(super) text: String,
@@ -55,13 +58,16 @@ pub enum Step {
     Blend,
     /// Polyhedra rounded by clusters.
     Cluster,
+    /// Geometry detail for smooth regions.
+    Detail,
     /// Writing. Always the last.
     Output,
 }
 
 impl Step {
     /// The order of steps where a recipe names none.
-    pub const ORDER: [Self; 6] = [Self::Cut, Self::Pose, Self::Boolean, Self::Compose, Self::Blend, Self::Cluster];
+    pub const ORDER: [Self; 7] =
+        [Self::Cut, Self::Pose, Self::Boolean, Self::Compose, Self::Blend, Self::Cluster, Self::Detail];
 }
 
 /// One input.
@@ -326,4 +332,63 @@ pub struct Cluster {
     pub tolerance: Option<Spanned<f64>>,
     /// The clusters; chosen where left out.
     pub clusters: Option<Vec<crate::cluster::Entry>>,
+}
+
+/// Detail for a region.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Detail {
+    /// `"unstructured"`, or `"structured"` with `along`. Decided by `along` where left out.
+    pub mode: Option<Spanned<String>>,
+    /// What gets detail; what joins of openings have made where left out. A part it names is what goes by that name at this point.
+    pub target: Option<Spanned<DetailRegion>>,
+    /// Where detail is taken from: a region, or a list of them. A part named here is that part as posed, whole; without a name the region lies on the target's own part.
+    pub source: Spanned<DetailRegions>,
+    /// A curve from detail into the target, along which detail is continued patch by patch first.
+    #[serde(default)]
+    pub along: Vec<DVec3Array>,
+    /// Width of the band along the curve.
+    pub width: Option<Spanned<Length>>,
+    /// Distance of patches along the curve.
+    pub spacing: Option<Spanned<Length>>,
+    /// Factor of the detail; 1 where left out.
+    pub intensity: Option<Spanned<f64>>,
+    /// What is shorter counts as detail.
+    pub wavelength: Option<Spanned<Length>>,
+}
+
+/// One region or several.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+pub enum DetailRegions {
+    /// One.
+    One(DetailRegion),
+    /// Several.
+    Many(Vec<DetailRegion>),
+}
+
+impl DetailRegions {
+    /// All of them.
+    pub fn all(&self) -> &[DetailRegion] {
+        match self {
+            Self::One(region) => std::slice::from_ref(region),
+            Self::Many(regions) => regions,
+        }
+    }
+}
+
+/// A region of a part.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DetailRegion {
+    /// Which part, by name.
+    pub part: Option<String>,
+    /// The faces around the surface point nearest to this one, as far as `radius`.
+    pub near: Option<DVec3Array>,
+    /// See `near`.
+    pub radius: Option<Length>,
+    /// The faces of a group of the part's file.
+    pub group: Option<String>,
+    /// What a stage made: `"transition"`, `"blend"`.
+    pub origin: Option<String>,
 }
