@@ -16,8 +16,8 @@
 //! | `join.rs` | union, difference and intersection, with blended seams |
 //! | `round.rs` | blends along feature curves |
 //! | `compose/` | openings joined by one smooth surface |
-//! | `cut/` | cuts by planes |
-//! | `blend/` | rolling-ball blends of closed curves |
+//! | `cut/` | cuts by planes and closed paths |
+//! | `blend/` | rolling-ball blends of curves |
 //! | `cluster/` | polyhedra rounded cluster by cluster |
 //! | `detail.rs` | geometry detail from region to region |
 //! | `recipe/` | whole models as TOML files |

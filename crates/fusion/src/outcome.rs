@@ -79,8 +79,10 @@ const SNAPS: [f64; 2] = [5e-3, 2e-2];
 
 /// Notes in the report what a blend did.
 pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Report) {
-    let worst = report.residuals.entry("contact".into()).or_default();
-    *worst = worst.max(blended.residual);
+    if blended.strips > 0 {
+        let worst = report.residuals.entry("contact".into()).or_default();
+        *worst = worst.max(blended.residual);
+    }
     report.figures.insert("radius".into(), params.radius);
     *report.figures.entry("strips".into()).or_default() += blended.strips as f64;
     *report.figures.entry("fields".into()).or_default() += blended.fields as f64;

@@ -38,6 +38,22 @@ pub enum VertexOrigin {
     },
 }
 
+impl VertexOrigin {
+    /// Barycentric coordinates in the face with these corners, for a vertex on that face; `None` for one on no input.
+    pub fn barycentric(&self, corners: [VertexId; 3]) -> Option<[f64; 3]> {
+        let at = |v: VertexId, w: f64| corners.map(|c| if c == v { w } else { 0.0 });
+        match *self {
+            Self::Input { vertex, .. } => Some(at(vertex, 1.0)),
+            Self::Edge { ends, t, .. } => {
+                let (a, b) = (at(ends[0], 1.0 - t), at(ends[1], t));
+                Some([0, 1, 2].map(|k| a[k] + b[k]))
+            }
+            Self::Face { barycentric, .. } => Some(barycentric),
+            Self::New { .. } => None,
+        }
+    }
+}
+
 /// Where a face came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaceOrigin {

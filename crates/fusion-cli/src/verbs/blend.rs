@@ -27,11 +27,14 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         blend: args.rolling.with_radius(radius, joint_diagonal(models))?,
         format: destination.format,
     };
-    let name = args.input.display();
-    let mut outcome = round(&model, &params, session.watch())
-        .map_err(|e| Failure::of(&e, e.to_string().replace("part 0 ", &format!("{name} "))))?;
+    let mut outcome = round(&model, &params, session.watch()).map_err(|e| refused(args, &e))?;
     outcome.report.inputs = counts(std::slice::from_ref(&args.input), models);
     session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
+}
+
+/// The refusal with the input called by its name.
+fn refused(args: &Args, error: &fusion::Error) -> Failure {
+    Failure::of(error, error.to_string().replace("part 0 ", &format!("{} ", args.input.display())))
 }
 
 fn picked(args: &Args) -> Result<Vec<Picked>, Failure> {
@@ -51,8 +54,7 @@ fn limit(session: &Session, args: &Args) -> Result<(), Failure> {
         blend: blend::Params::new(1.0),
         format: Format::Obj,
     };
-    let limit =
-        fusion::round::max_radius(&model, &params, session.watch()).map_err(|e| Failure::of(&e, e.to_string()))?;
+    let limit = fusion::round::max_radius(&model, &params, session.watch()).map_err(|e| refused(args, &e))?;
     let at = limit.at.map(|p| p.to_array());
     if args.json {
         return print(&format!("{:#}\n", json!({ "max_radius": limit.radius, "limited_by": limit.what, "at": at })));

@@ -22,7 +22,7 @@ const CLOSE_ENOUGH: f64 = 1.005;
 const START: f64 = 1e-3;
 const GROWTH: f64 = 1.5;
 /// How often the first radius is halved when it fails.
-const HALVINGS: i32 = 6;
+const HALVINGS: u32 = 6;
 
 /// The end of the interval from 0 in which every radius can be blended along `curves` with [`Overlap::Error`]: radii are
 /// tried from small ones upwards until one fails, and the gap is halved.
@@ -30,6 +30,17 @@ const HALVINGS: i32 = 6;
 /// # Errors
 /// [`Error::DoesNotFit`] if even the smallest fails; those without a place as [`super::blend`].
 pub fn max_radius(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &Params,
+    watch: &Watch,
+) -> Result<Limit, Error> {
+    max_radius_above(HALVINGS, mesh, curves, params, watch)
+}
+
+/// The same, where the first radius is halved no more than `halvings` times: very small balls on long edges cost seconds.
+pub(crate) fn max_radius_above(
+    halvings: u32,
     mesh: &Connected<TriMesh>,
     curves: &[BlendCurve],
     params: &Params,
@@ -52,7 +63,7 @@ pub fn max_radius(
     for halving in 0.. {
         match fits(works)? {
             None => break,
-            Some((what, at)) if halving == HALVINGS => {
+            Some((what, at)) if halving == halvings => {
                 let at = at.unwrap_or(DVec3::ZERO);
                 return Err(Error::DoesNotFit { what, at, radius: works, workable: None });
             }

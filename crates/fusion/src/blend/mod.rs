@@ -40,6 +40,7 @@ mod trouble;
 use ending::Ends;
 use fill::fill;
 use glam::DVec3;
+pub(crate) use limit::max_radius_above;
 pub use limit::{Limit, max_radius};
 use linkage::cut_linkages;
 use mends::Mends;

@@ -37,6 +37,7 @@ use mesh_core::{Connected, Faces, Origins, Stage, TriMesh, Watch, boundary_loops
 use mesh_io::{Format, Model};
 use scissor::closed_path;
 use section::Section;
+pub(crate) use smooth::even;
 use smooth::smoothed;
 use tri_intersect::embed::{EmbedError, EmbedParams, embed};
 

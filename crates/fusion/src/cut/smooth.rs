@@ -47,7 +47,7 @@ pub(super) fn smoothed(mesh: &Connected<TriMesh>, curve: &SurfaceCurve, rounds: 
 }
 
 /// `count` points evenly along a closed polyline.
-fn even(places: &[DVec3], count: usize) -> Vec<DVec3> {
+pub(crate) fn even(places: &[DVec3], count: usize) -> Vec<DVec3> {
     let next = |i: usize| places[(i + 1) % places.len()];
     let mut lengths = vec![0.0];
     for i in 0..places.len() {

@@ -1,6 +1,7 @@
 //! Parts moved so that one of their openings faces another: a rigid alignment with soft correspondences ([Sharf2006]).
 
 use super::placement::Motion;
+use crate::cut::even;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Places on each loop.
@@ -10,7 +11,7 @@ const ROUNDS: usize = 60;
 
 /// The middle of a loop by length, and the unit normal of its area: for a boundary loop, with the part on its left, out of the opening.
 pub(super) fn opening_axis(points: &[DVec3]) -> Option<(DVec3, DVec3)> {
-    let even = even(points);
+    let even = even(points, SAMPLES);
     let middle = even.iter().sum::<DVec3>() / even.len() as f64;
     let next = |i: usize| even[(i + 1) % even.len()] - middle;
     let area: DVec3 = (0..even.len()).map(|i| next(i).cross(even[i] - middle)).sum();
@@ -24,7 +25,7 @@ pub(super) fn face_to_face(own: &[DVec3], target: &[DVec3], gap: f64) -> Option<
     let turn = DQuat::from_rotation_arc(axis, -facing);
     let place = to + gap * facing;
     let mut motion = Motion { rotation: turn, translation: place - turn * from };
-    let (own, target) = (even(own), even(target));
+    let (own, target) = (even(own, SAMPLES), even(target, SAMPLES));
     let target: Vec<DVec3> = target.iter().map(|p| p + gap * facing).collect();
     let radius = target.iter().map(|p| p.distance(place)).sum::<f64>() / SAMPLES as f64;
     for round in 0..ROUNDS {
@@ -61,22 +62,6 @@ fn small_motion(points: &[DVec3], wanted: &[DVec3]) -> Option<Motion> {
     let turn = inertia.inverse() * torque;
     let rotation = turn.is_finite().then(|| DQuat::from_scaled_axis(turn.clamp_length_max(0.5)))?;
     Some(Motion { rotation, translation: to - rotation * from })
-}
-
-/// Points evenly along a closed polyline.
-fn even(points: &[DVec3]) -> Vec<DVec3> {
-    let next = |i: usize| points[(i + 1) % points.len()];
-    let mut lengths = vec![0.0];
-    for i in 0..points.len() {
-        lengths.push(lengths[i] + points[i].distance(next(i)));
-    }
-    let at = |k: usize| {
-        let s = lengths[points.len()] * k as f64 / SAMPLES as f64;
-        let i = lengths.partition_point(|&l| l <= s).clamp(1, points.len()) - 1;
-        let t = (s - lengths[i]) / (lengths[i + 1] - lengths[i]);
-        points[i].lerp(next(i), if t.is_finite() { t } else { 0.0 })
-    };
-    (0..SAMPLES).map(at).collect()
 }
 
 #[cfg(test)]

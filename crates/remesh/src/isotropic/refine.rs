@@ -105,7 +105,7 @@ impl Refined {
             return;
         }
         let corners = mesh.corners(FaceId(parent));
-        let [u, v] = [a, b].map(|v| weights(self.origins[v], corners));
+        let [u, v] = [a, b].map(|v| self.origins[v].barycentric(corners).unwrap_or([1.0, 0.0, 0.0]));
         let mean = [0, 1, 2].map(|k| 0.5 * (u[k] + v[k]));
         self.origins.push(match mean.iter().position(|&w| w == 0.0) {
             Some(k) => {
@@ -135,19 +135,5 @@ impl Refined {
             if split[f as usize] { FaceOrigin::Piece { part: 0, face } } else { FaceOrigin::Input { part: 0, face } }
         };
         self.parents.iter().map(origin).collect()
-    }
-}
-
-/// Barycentric coordinates in the face with these corners.
-fn weights(origin: VertexOrigin, corners: [VertexId; 3]) -> [f64; 3] {
-    let at = |v: VertexId, w: f64| corners.map(|c| if c == v { w } else { 0.0 });
-    match origin {
-        VertexOrigin::Input { vertex, .. } => at(vertex, 1.0),
-        VertexOrigin::Edge { ends, t, .. } => {
-            let (a, b) = (at(ends[0], 1.0 - t), at(ends[1], t));
-            [0, 1, 2].map(|k| a[k] + b[k])
-        }
-        VertexOrigin::Face { barycentric, .. } => barycentric,
-        VertexOrigin::New { .. } => [1.0, 0.0, 0.0],
     }
 }

@@ -3,7 +3,6 @@
 use glam::DVec3;
 use mesh_core::{
     Adjacency, Connected, FaceId, FaceOrigin, Faces, HalfedgeId, Origins, Positions, SurfacePoint, TriMesh, VertexId,
-    VertexOrigin,
 };
 use tri_intersect::SurfaceCurve;
 
@@ -142,7 +141,8 @@ fn on_parent<M: Faces>(mesh: &M, fine: &Connected<TriMesh>, origins: &Origins, h
         return SurfacePoint::Edge { halfedge: h, t };
     };
     let corners = mesh.corners(face);
-    let [a, b] = [fine.tail(h), fine.head(h)].map(|v| weights(origins.vertices[v], corners));
+    let [a, b] =
+        [fine.tail(h), fine.head(h)].map(|v| origins.vertices[v].barycentric(corners).unwrap_or([1.0 / 3.0; 3]));
     let w = [0, 1, 2].map(|k| (1.0 - t) * a[k] + t * b[k]);
     address(face, w)
 }
@@ -154,19 +154,5 @@ fn address(face: FaceId, w: [f64; 3]) -> SurfacePoint {
             SurfacePoint::Edge { halfedge, t: w[(k + 2) % 3] / (w[(k + 1) % 3] + w[(k + 2) % 3]) }
         }
         None => SurfacePoint::Face { face, barycentric: w },
-    }
-}
-
-/// Barycentric coordinates, in the face with these corners, of a vertex on it.
-fn weights(origin: VertexOrigin, corners: [VertexId; 3]) -> [f64; 3] {
-    let at = |v: VertexId, w: f64| corners.map(|c| if c == v { w } else { 0.0 });
-    match origin {
-        VertexOrigin::Input { vertex, .. } => at(vertex, 1.0),
-        VertexOrigin::Edge { ends, t, .. } => {
-            let (a, b) = (at(ends[0], 1.0 - t), at(ends[1], t));
-            [0, 1, 2].map(|k| a[k] + b[k])
-        }
-        VertexOrigin::Face { barycentric, .. } => barycentric,
-        VertexOrigin::New { .. } => [1.0 / 3.0; 3],
     }
 }

@@ -6,13 +6,13 @@
 //! | `truth.rs` | the exact ball's way and the canal surface around it |
 //! | `cases.rs` | the solids, at any resolution, in a generic pose |
 //! | `measure.rs` | errors and angles of a result against the truth |
-//! | `main.rs` | bounds, order, validity and locality of every case |
+//! | `mod.rs` | bounds, order, validity and locality of every case |
 //! | `balls.rs` | balls against the input's triangles |
 //! | `volume.rs` | material added and taken |
 //! | `field.rs` | the blend as a field |
 //! | `symmetry.rs` | threads, order of the parts, quarter turns |
 //!
-//! `cargo test -p fusion --test analytic -- --nocapture` prints the figures.
+//! `cargo test -p fusion --test pipelines analytic -- --nocapture` prints the figures.
 
 mod balls;
 mod cases;

@@ -1,8 +1,6 @@
 //! Every exit code, and the promise that any but 0 leaves files as they were.
 
-mod support;
-
-use support::{Bench, cube};
+use crate::support::{Bench, cube};
 
 #[test]
 fn code_0_and_a_table() {

@@ -1,9 +1,9 @@
 //! The blend as a field against the exact canal surface.
 
-use crate::cases::Pair::{self, Branch, Cross, PlateCylinder, PlateSphere, Spheres};
-use crate::cases::{COARSE, Case, RADIUS, SMALLER};
-use crate::measure::{measure, run};
-use crate::{assert_local, assert_valid, row};
+use super::cases::Pair::{self, Branch, Cross, PlateCylinder, PlateSphere, Spheres};
+use super::cases::{COARSE, Case, RADIUS, SMALLER};
+use super::measure::{measure, run};
+use super::{assert_local, assert_valid, row};
 use fusion::blend::Surface;
 use tri_intersect::Operation::{self, Difference, Intersection, Union};
 

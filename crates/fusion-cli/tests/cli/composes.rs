@@ -1,11 +1,9 @@
 //! Open parts joined at the command line.
 
-mod support;
-
+use crate::support::{Bench, json};
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use support::Bench;
 
 /// A cup along the z axis: open at height `rim`, closed by a point at height `bottom`, `n` around.
 fn cup(radius: f64, rim: f64, bottom: f64, n: usize, flipped: bool) -> String {
@@ -41,10 +39,6 @@ fn bench() -> Bench {
     bench.file("low.off", &cup(1.0, -0.6, -2.0, 48, false));
     bench.file("high.off", &cup(0.8, 0.6, 2.0, 40, false));
     bench
-}
-
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).unwrap()
 }
 
 /// The lines of an OFF file's vertices.

@@ -1,13 +1,7 @@
 //! `cut` and `run`, seen from outside.
 
-mod support;
-
+use crate::support::{Bench, json};
 use serde_json::Value;
-use support::Bench;
-
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).unwrap()
-}
 
 const HALVES: &str = r#"
 version = 1

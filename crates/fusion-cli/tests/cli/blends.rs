@@ -1,19 +1,13 @@
 //! What each option of a blend changes.
 
-mod support;
-
+use crate::support::{Bench, Run, json};
 use fusion::mesh_core::shapes;
 use glam::{DQuat, DVec3};
 use serde_json::Value;
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::fmt::Write as _;
-use support::{Bench, Run};
 
 const RADIUS: f64 = 0.2;
-
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).unwrap()
-}
 
 /// A drum of radius 1 and height 2: both rims are closed feature curves.
 fn drum() -> String {

@@ -1,7 +1,6 @@
 //! Runs the built program as a user would.
 
-#![allow(dead_code, reason = "each test file uses its own part")]
-
+use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
@@ -105,4 +104,9 @@ pub fn cube(center: [f64; 3], size: f64) -> String {
         writeln!(text, "3 {a} {b} {c}\n3 {a} {c} {d}").unwrap();
     }
     text
+}
+
+/// A printed or written report.
+pub fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
 }

@@ -1,10 +1,8 @@
 //! Geometry detail at the command line.
 
-mod support;
-
+use crate::support::{Bench, json};
 use serde_json::Value;
 use std::fmt::Write as _;
-use support::Bench;
 
 /// A wavy square of side 2 with a smooth disc of radius `smooth` in its middle.
 fn plane(smooth: f64) -> String {
@@ -32,10 +30,6 @@ fn bench() -> Bench {
     bench.file("holed.off", &plane(0.4));
     bench.file("whole.off", &plane(0.0));
     bench
-}
-
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).unwrap()
 }
 
 #[test]

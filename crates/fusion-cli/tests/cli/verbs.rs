@@ -1,14 +1,8 @@
 //! What each verb gives, seen from outside.
 
-mod support;
-
+use crate::support::{Bench, cube, json};
 use serde_json::Value;
 use std::fs;
-use support::{Bench, cube};
-
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).unwrap()
-}
 
 #[test]
 fn info_as_json() {

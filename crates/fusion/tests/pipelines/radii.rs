@@ -2,8 +2,9 @@
 
 use fusion::blend::{Blended, Error, Overlap, Params, Radii, blend, max_radius};
 use fusion::features::{self, feature_curves, nearest_curve};
+use fusion::round::max_radius_of_each;
 use glam::DVec3;
-use mesh_core::{Connected, Faces, Positions, TriMesh, VertexOrigin, Watch, shapes, volume};
+use mesh_core::{Connected, Faces, Positions, TriMesh, VertexId, VertexOrigin, Watch, shapes, volume};
 use spine::BlendCurve;
 use std::f64::consts::PI;
 
@@ -102,4 +103,32 @@ fn the_largest_radius_of_one_edge_is_right() {
         blend(&mesh, curves, &params, &Watch::default()).is_ok()
     };
     assert!(limit.radius > 0.45 && fits(0.99 * limit.radius) && !fits(1.02 * limit.radius), "{limit:?}");
+}
+
+/// Balls of a ten-thousandth on long edges of huge triangles took seconds each, and a list of them minutes.
+#[test]
+fn the_radii_of_a_star_are_listed_in_seconds() {
+    let mut star = shapes::cuboid(DVec3::splat(0.25));
+    let sides: Vec<[[VertexId; 3]; 2]> = star.faces.chunks(2).map(|pair| [pair[0], pair[1]]).collect();
+    star.faces.clear();
+    for side in sides {
+        let corners: Vec<DVec3> = side.iter().flatten().map(|&v| star.position(v)).collect();
+        let tip = VertexId(star.positions.len() as u32);
+        let out = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
+        star.positions.push(0.5 * out);
+        // The outline of the two triangles: every edge but the one both have.
+        let edges: Vec<[VertexId; 2]> = side.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]).collect();
+        let rim = edges.iter().filter(|e| !edges.contains(&[e[1], e[0]]));
+        star.faces.extend(rim.map(|&[a, b]| [a, b, tip]));
+    }
+    let star = Connected::new(star).unwrap();
+    let curves = feature_curves(&star, &features::Params::default());
+    assert_eq!((star.face_count(), curves.len()), (24, 36));
+    let limits = max_radius_of_each(&star, &curves, &Watch::default()).unwrap();
+    assert_eq!(limits.len(), 36);
+    // What is listed for an edge is what asking for it alone gives.
+    for (curve, limit) in curves.iter().zip(&limits).filter(|l| l.1.is_some()).take(2) {
+        let alone = BlendCurve { halfedges: curve.halfedges.clone(), closed: curve.closed };
+        assert_eq!(max_radius(&star, &[alone], &Params::new(1.0), &Watch::default()).ok(), *limit);
+    }
 }

@@ -1,6 +1,6 @@
 //! Solids that cross in circles and in the curve of two cylinders, at any resolution, in a generic pose.
 
-use crate::truth::{Shape, Spine, Truth};
+use super::truth::{Shape, Spine, Truth};
 use glam::{DAffine3, DQuat, DVec3, EulerRot};
 use mesh_core::{Adjacency, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, dihedral_angle, shapes};
 use std::f64::consts::{FRAC_PI_2, TAU};

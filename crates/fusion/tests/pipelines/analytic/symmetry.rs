@@ -1,8 +1,8 @@
 //! What must not matter: the number of threads, the order of the parts, a quarter turn.
 
-use crate::cases::Pair::{self, Branch, Cross, PlateCylinder, PlateSphere, Spheres};
-use crate::cases::{COARSE, Case, RADIUS, SMALLER};
-use crate::measure::run;
+use super::cases::Pair::{self, Branch, Cross, PlateCylinder, PlateSphere, Spheres};
+use super::cases::{COARSE, Case, RADIUS, SMALLER};
+use super::measure::run;
 use glam::DVec3;
 use mesh_core::{Connected, Faces, TriMesh};
 use mesh_query::TriBvh;

@@ -1,9 +1,7 @@
 //! `cluster` as a user runs it.
 
-mod support;
-
+use crate::support::{Bench, json};
 use serde_json::Value;
-use support::Bench;
 
 /// A slab of 3 × 2 × 0.6, as polygons; its short edges are 0-4, 1-5, 2-6, 3-7.
 const SLAB: &str = "OFF\n8 6 0\n0 0 0\n3 0 0\n3 2 0\n0 2 0\n0 0 0.6\n3 0 0.6\n3 2 0.6\n0 2 0.6\n\
@@ -17,10 +15,6 @@ fn bench() -> Bench {
         "version = 1\n[[cluster]]\nvertices = [0, 4]\ndegree = [4, 2]\n[[cluster]]\nvertices = [1, 5]\n",
     );
     bench
-}
-
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).unwrap()
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Runs a case and measures the result against the truth.
 
-use crate::cases::Case;
+use super::cases::Case;
 use fusion::blend::{Blended, Error, Params, blend};
 use mesh_core::{Adjacency, Connected, FaceId, FaceOrigin, Faces, HalfedgeId, Positions, TriMesh, VertexOrigin, Watch};
 use spine::BlendCurve;

@@ -1,8 +1,8 @@
 //! Every ball of a rail touches both parts, by brute force over all their triangles.
 
-use crate::cases::Pair::{self, Branch, Cross, PlateCylinder, PlateSphere, Spheres};
-use crate::cases::{COARSE, Case, RADIUS, SMALLER};
-use crate::measure::join;
+use super::cases::Pair::{self, Branch, Cross, PlateCylinder, PlateSphere, Spheres};
+use super::cases::{COARSE, Case, RADIUS, SMALLER};
+use super::measure::join;
 use mesh_core::Faces;
 use mesh_query::closest_point_on_triangle;
 use tri_intersect::Operation::{self, Difference, Intersection, Union};

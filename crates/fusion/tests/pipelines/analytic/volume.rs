@@ -1,8 +1,8 @@
 //! The material a fillet adds or takes, where Pappus gives it.
 
-use crate::cases::Pair::PlateCylinder;
-use crate::cases::{COARSE, Case, RADIUS};
-use crate::measure::run;
+use super::cases::Pair::PlateCylinder;
+use super::cases::{COARSE, Case, RADIUS};
+use super::measure::run;
 use mesh_core::volume;
 use std::f64::consts::{PI, TAU};
 use tri_intersect::Operation::{self, Difference, Intersection, Union};

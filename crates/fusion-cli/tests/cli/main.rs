@@ -1,0 +1,10 @@
+//! The program from outside.
+
+mod blends;
+mod cluster;
+mod composes;
+mod details;
+mod exit_codes;
+mod recipes;
+mod support;
+mod verbs;

@@ -1,0 +1,11 @@
+//! The pipelines from outside. One program for all, since linking one takes seconds and a hundred megabytes.
+
+mod analytic;
+mod compose;
+mod corners;
+mod details;
+mod keep;
+mod placement;
+mod radii;
+mod scissors;
+mod silhouettes;
