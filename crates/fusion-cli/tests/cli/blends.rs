@@ -3,7 +3,6 @@
 use crate::support::{Bench, Run, json};
 use fusion::mesh_core::shapes;
 use glam::{DQuat, DVec3};
-use serde_json::Value;
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::fmt::Write as _;
 

@@ -1,7 +1,6 @@
 //! `cluster` as a user runs it.
 
 use crate::support::{Bench, json};
-use serde_json::Value;
 
 /// A slab of 3 × 2 × 0.6, as polygons; its short edges are 0-4, 1-5, 2-6, 3-7.
 const SLAB: &str = "OFF\n8 6 0\n0 0 0\n3 0 0\n3 2 0\n0 2 0\n0 0 0.6\n3 0 0.6\n3 2 0.6\n0 2 0.6\n\

@@ -1,7 +1,6 @@
 //! Open parts joined at the command line.
 
 use crate::support::{Bench, json};
-use serde_json::Value;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 

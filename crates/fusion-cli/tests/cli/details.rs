@@ -1,7 +1,6 @@
 //! Geometry detail at the command line.
 
 use crate::support::{Bench, json};
-use serde_json::Value;
 use std::fmt::Write as _;
 
 /// A wavy square of side 2 with a smooth disc of radius `smooth` in its middle.

@@ -1,7 +1,6 @@
 //! `cut` and `run`, seen from outside.
 
 use crate::support::{Bench, json};
-use serde_json::Value;
 
 const HALVES: &str = r#"
 version = 1

@@ -1,7 +1,6 @@
 //! What each verb gives, seen from outside.
 
 use crate::support::{Bench, cube, json};
-use serde_json::Value;
 use std::fs;
 
 #[test]
