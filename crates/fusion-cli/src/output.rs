@@ -63,6 +63,13 @@ pub fn check_writable(path: &Path) -> Result<(), Failure> {
     beside(&place).map(drop).map_err(|e| cannot_write(&place, &e))
 }
 
+/// Makes a folder that files can be written into, with those above it.
+pub fn make_folder(folder: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(folder)
+        .and_then(|()| beside(&folder.join("any")).map(drop))
+        .map_err(|e| cannot_write(folder, &e))
+}
+
 fn check_no_folder(path: &Path) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(Failure::unwritable(format!("cannot write {}: it is a folder", path.display())));

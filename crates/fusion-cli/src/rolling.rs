@@ -2,8 +2,10 @@
 
 use crate::failure::Failure;
 use crate::length::{Length, Radius, radius_at};
+use crate::output::{self, Outputs};
 use clap::{Args, ValueEnum};
-use fusion::{Profile, Solver, blend, profile_from_text};
+use fusion::blend::{self, Sketch};
+use fusion::{Profile, Solver, profile_from_text};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
@@ -37,6 +39,10 @@ pub struct Rolling {
     /// Largest distance of the blend's chords from its cross-section, as a share of the radius
     #[arg(long, value_name = "SHARE", default_value = "0.005", value_parser = tolerance, requires = "radius")]
     pub tolerance: f64,
+    /// Write what the stages of the blend drew into this folder as OBJ files: the ball's way, the contact curves,
+    /// profiles, patches and surfaces, even where the blend is refused (docs/blend.md lists them)
+    #[arg(long, value_name = "DIR", requires = "radius")]
+    pub debug_geometry: Option<PathBuf>,
 }
 
 impl Rolling {
@@ -64,8 +70,26 @@ impl Rolling {
                 Surface::Keep => blend::Surface::Keep(blend::keep::Params::default()),
                 Surface::Field => blend::Surface::Field,
             },
+            sketch: if self.debug_geometry.is_some() { Sketch::new() } else { Sketch::default() },
             ..blend::Params::new(radius)
         })
+    }
+
+    /// Makes the folder for drawings, if one is asked for, before any work is done.
+    pub fn prepare(&self) -> Result<(), Failure> {
+        let Some(folder) = &self.debug_geometry else { return Ok(()) };
+        output::make_folder(folder)
+    }
+
+    /// Writes what was drawn, whatever came of the blend, and passes that on.
+    pub fn keep_drawings<T>(&self, sketch: &Sketch, result: Result<T, Failure>) -> Result<T, Failure> {
+        let Some(folder) = &self.debug_geometry else { return result };
+        let mut outputs = Outputs::default();
+        for (name, bytes) in sketch.files() {
+            outputs.add(folder.join(name), bytes);
+        }
+        let written = outputs.commit_after(|| Ok(()));
+        result.and_then(|value| written.map(|()| value))
     }
 }
 

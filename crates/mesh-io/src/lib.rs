@@ -18,7 +18,7 @@
 //! | `format.rs`, `error.rs`, `notes.rs` | names of formats; what went wrong, or was changed, and where |
 //! | `read.rs`, `write.rs` | from files to models and back; files appear whole or not at all |
 //! | `folder.rs` | references to side files that are safe to follow |
-//! | `obj/`, `ply/`, `off/`, `stl.rs`, `gltf/`, `threemf/` | one format each, reader and writer |
+//! | `obj/`, `ply/`, `off/`, `stl.rs`, `gltf/`, `threemf/` | one format each, reader and writer; curves as OBJ lines |
 //! | `text.rs`, `number.rs` | tokens of text files; numbers as text, bit for bit |
 //! | `soup.rs`, `triangulate.rs` | polygons to triangles |
 //! | `weld.rs` | merging vertices at the same place |
@@ -49,6 +49,7 @@ mod write;
 pub use error::{At, Error};
 pub use format::Format;
 pub use model::{Groups, Material, Materials, Model, Note, Polygons, Texture, TextureSource};
+pub use obj::lines_to_obj;
 pub use read::{read, read_as, read_stream};
 pub use weld::{Welded, weld_exact, weld_within};
 pub use write::{Written, as_written, to_bytes, write, write_as};

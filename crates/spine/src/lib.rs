@@ -232,6 +232,29 @@ impl Error {
     }
 }
 
+/// A ball that did not come all the way: why, and what there is to look at.
+#[derive(Clone, Debug)]
+pub struct Halt {
+    /// Why.
+    pub error: Error,
+    /// The base patches, if they had been flooded.
+    pub patches: Option<Arc<[Patch; 2]>>,
+    /// Centres of the balls on the way so far, in order.
+    pub balls: Vec<DVec3>,
+}
+
+impl From<Error> for Box<Halt> {
+    fn from(error: Error) -> Self {
+        Self::new(Halt { error, patches: None, balls: Vec::new() })
+    }
+}
+
+impl From<mesh_query::Error> for Box<Halt> {
+    fn from(error: mesh_query::Error) -> Self {
+        Error::from(error).into()
+    }
+}
+
 /// Rolls a ball along `curve`. `all_curves` are the curves being blended together: no patch floods across any of them.
 ///
 /// Cost grows with the faces within reach and the samples along the curve, not with the mesh.
@@ -244,9 +267,22 @@ pub fn roll<M: Adjacency + Positions + Sync>(
     all_curves: &[BlendCurve],
     params: &Params,
 ) -> Result<Rail, Error> {
+    roll_or_halt(mesh, curve, all_curves, params).map_err(|halt| halt.error)
+}
+
+/// [`roll`], with what there is to look at where the ball halts.
+///
+/// # Errors
+/// [`Halt`].
+pub fn roll_or_halt<M: Adjacency + Positions + Sync>(
+    mesh: &M,
+    curve: &BlendCurve,
+    all_curves: &[BlendCurve],
+    params: &Params,
+) -> Result<Rail, Box<Halt>> {
     let radius = &params.radius;
     if !(radius.base > 0.0 && radius.base.is_finite()) {
-        return Err(Error::BadRadius { radius: radius.base });
+        return Err(Error::BadRadius { radius: radius.base }.into());
     }
     let convexity = curve.convexity(mesh)?;
     let edges = all_curves.iter().flat_map(|c| &c.halfedges).map(|&h| mesh.edge(h));
@@ -277,11 +313,19 @@ pub fn roll<M: Adjacency + Positions + Sync>(
                 Footing::Firm
             }
         };
+        let mut way = Vec::new();
         let traced = match &params.solver {
-            Solver::Contact => march::trace(mesh, curve, convexity, &patches, params, footing)?,
+            Solver::Contact => march::trace(mesh, curve, convexity, &patches, params, footing, &mut way),
             Solver::Offset(offset) => {
                 let base = offset::Base { patches: &patches, barriers: &barriers, alpha };
-                offset::trace(mesh, curve, convexity, base, radius, params.step, offset)?
+                offset::trace(mesh, curve, convexity, base, radius, params.step, offset)
+            }
+        };
+        let traced = match traced {
+            Ok(traced) => traced,
+            Err(error) => {
+                let balls = way.iter().map(|c| c.center).collect();
+                return Err(Box::new(Halt { error, patches: Some(Arc::new(patches)), balls }));
             }
         };
         let (contacts, closed) = match traced {
@@ -293,7 +337,8 @@ pub fn roll<M: Adjacency + Positions + Sync>(
             }
         };
         if let [only] = contacts[..] {
-            return Err(Error::Stuck { at: only.center, radius: only.radius, wanted: radius.base });
+            let error = Error::Stuck { at: only.center, radius: only.radius, wanted: radius.base };
+            return Err(Box::new(Halt { error, patches: Some(Arc::new(patches)), balls: vec![only.center] }));
         }
         let gaps = [1.5 * params.step, if params.longest > params.step { params.longest } else { 0.0 }];
         let fairing = fair::Fairing { fairness: params.fairness, gaps, softenings: &params.softenings, closed };

@@ -37,7 +37,8 @@ pub(crate) enum Footing {
     Over,
 }
 
-/// Rolls a ball along `curve`, looking at every ball's `footing`.
+/// Rolls a ball along `curve`, looking at every ball's `footing`. Where a closed trace cannot go on, `contacts` are the
+/// balls so far.
 ///
 /// # Errors
 /// [`Error::NoStart`] where no ball can be seated anywhere, [`Error::Stuck`] where the trace cannot go on,
@@ -49,6 +50,7 @@ pub(crate) fn trace<M: Adjacency + Positions>(
     patches: &[Patch; 2],
     params: &Params,
     footing: impl Fn(&Contact) -> Footing,
+    contacts: &mut Vec<Contact>,
 ) -> Result<Trace, Error> {
     let (radius, step) = (&params.radius, params.step);
     let (start, sign) = first_contact(mesh, curve, convexity, patches, radius)?;
@@ -57,7 +59,8 @@ pub(crate) fn trace<M: Adjacency + Positions>(
         let ends = curve.ends(mesh).into_iter().map(|end| end.0).collect();
         return Ok(trace_open(mesh, patches, params, &Way { start, sign, limit, ends }, footing));
     }
-    let mut contacts = vec![start];
+    contacts.clear();
+    contacts.push(start);
     let (mut here, mut travelled, mut stride) = (start, 0.0, step);
     while travelled < limit {
         let next = stride_from(mesh, patches, params, &here, sign, &mut stride).ok_or(stuck(&here, radius))?;
@@ -71,7 +74,7 @@ pub(crate) fn trace<M: Adjacency + Positions>(
             if contacts.len() > 3 && here.center.distance(start.center) < 0.3 * step {
                 contacts.pop();
             }
-            return Ok(Trace::Closed(contacts));
+            return Ok(Trace::Closed(std::mem::take(contacts)));
         }
         // Steps are as long as they can be, so a trace that needs more than this crawls round a place it cannot pass.
         if contacts.len() as f64 > 4.0 * limit / step {

@@ -18,6 +18,7 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     };
     let target = Target { output: output.clone(), to: args.to.clone(), origins: args.origins.clone() };
     let destination = Destination::check(&target, session)?;
+    args.rolling.prepare()?;
     let model = session.read(&args.input, &args.source)?;
     let models = std::slice::from_ref(&model);
     let params = round::Params {
@@ -27,7 +28,8 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         blend: args.rolling.with_radius(radius, joint_diagonal(models))?,
         format: destination.format,
     };
-    let mut outcome = round(&model, &params, session.watch()).map_err(|e| refused(args, &e))?;
+    let outcome = round(&model, &params, session.watch()).map_err(|e| refused(args, &e));
+    let mut outcome = args.rolling.keep_drawings(&params.blend.sketch, outcome)?;
     outcome.report.inputs = counts(std::slice::from_ref(&args.input), models);
     session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
 }

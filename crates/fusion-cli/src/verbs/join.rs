@@ -8,10 +8,13 @@ use fusion::{Error, Operation, join};
 /// Joins the inputs and writes the result.
 pub fn run(session: &Session, args: &Args, operation: Operation) -> Result<(), Failure> {
     let destination = Destination::check(&args.target, session)?;
+    args.rolling.prepare()?;
     let models = session.read_all(&args.inputs, &args.source)?;
     let blend = args.radius.map(|r| args.rolling.with_radius(r, joint_diagonal(&models))).transpose()?;
     let params = join::Params { operation, blend, format: destination.format };
-    let mut outcome = join(&models, &params, session.watch()).map_err(|e| explain(&e, args))?;
+    let sketch = params.blend.as_ref().map(|b| b.sketch.clone()).unwrap_or_default();
+    let outcome = join(&models, &params, session.watch()).map_err(|e| explain(&e, args));
+    let mut outcome = args.rolling.keep_drawings(&sketch, outcome)?;
     let report = &mut outcome.report;
     report.command = match operation {
         Operation::Union => "union",

@@ -4,6 +4,7 @@ mod blends;
 mod cluster;
 mod composes;
 mod details;
+mod drawings;
 mod exit_codes;
 mod recipes;
 mod support;

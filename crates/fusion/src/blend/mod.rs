@@ -7,6 +7,7 @@
 //! | `limit.rs` | the largest radius that fits |
 //! | `radii.rs` | how the radius varies along a curve and between its sides |
 //! | `mends.rs` | what has been done so far to make the blend fit |
+//! | `rolling.rs` | a ball rolled along every curve |
 //! | `network.rs` | the nodes at which open curves meet or end |
 //! | `ending.rs` | rails cut to length there: set back, run out, or stopped at the surface ahead |
 //! | `corner.rs` | how far curves that meet are set back, and the ball that touches all sides |
@@ -18,6 +19,7 @@
 //! | `sew.rs` | removal of what lies between, sewing |
 //! | `field/` | the blend as a field: no spine, cannot fold |
 //! | `keep/` | the other surface: vertices slid onto the sweep, connectivity kept |
+//! | `sketch.rs` | what the stages draw for whoever wants to look |
 //! | `trouble.rs` | what a stage refuses, and where |
 
 mod auto;
@@ -32,7 +34,9 @@ mod mends;
 mod network;
 mod plate;
 mod radii;
+mod rolling;
 mod sew;
+mod sketch;
 mod stretch;
 mod strip;
 mod trouble;
@@ -44,15 +48,16 @@ pub(crate) use limit::max_radius_above;
 pub use limit::{Limit, max_radius};
 use linkage::cut_linkages;
 use mends::Mends;
-use mesh_core::{
-    Adjacency, Cancelled, Connected, FaceId, Faces, NotManifold, Origins, Positions, TriMesh, VertexId, Watch,
-};
-use network::{Kind, Network};
+use mesh_core::{Cancelled, Connected, FaceId, Faces, NotManifold, Origins, Positions, TriMesh, VertexId, Watch};
+use network::Network;
 use profile_nurbs::Profile;
 pub use radii::Radii;
-use rayon::prelude::*;
+use rolling::{REACH_AHEAD, roll_missing, step_length};
 use sew::{between, sew};
-use spine::{BlendCurve, Dip, RadiusField, Rail, Solver, roll};
+use sketch::piece_of;
+pub use sketch::{Drawing, Sketch};
+pub use spine::BlendCurve;
+use spine::{Rail, Solver};
 use strip::{Fineness, sweep};
 use trouble::Trouble;
 
@@ -82,6 +87,8 @@ pub struct Params {
     pub snap: f64,
     /// How the surface is put in.
     pub surface: Surface,
+    /// Where the stages draw what they do.
+    pub sketch: Sketch,
 }
 
 /// How the surface is put in.
@@ -122,6 +129,7 @@ impl Params {
             tolerance: 0.005,
             snap: 2e-4,
             surface: Surface::default(),
+            sketch: Sketch::default(),
         }
     }
 }
@@ -232,7 +240,8 @@ fn explained(
         Trouble::Places { what, places } => {
             let mut workable = None;
             for halvings in 1..=3 {
-                let smaller = Params { radius: params.radius * 0.5f64.powi(halvings), ..params.clone() };
+                let radius = params.radius * 0.5f64.powi(halvings);
+                let smaller = Params { radius, sketch: Sketch::default(), ..params.clone() };
                 match attempt(mesh, curves, &smaller, ROUNDS / 2, watch) {
                     Ok(_) => {
                         workable = Some(smaller.radius);
@@ -273,6 +282,7 @@ fn attempt(
         return Err(Trouble::TwoRadiiMeet(mesh.position(node.vertex)));
     }
     let mut rails: Vec<Option<Rail>> = curves.iter().map(|_| None).collect();
+    params.sketch.begin(mesh, curves);
     let mut at_first = None;
     for round in 0.. {
         watch.step("blend", round as f64 / rounds as f64)?;
@@ -292,6 +302,7 @@ fn attempt(
             }
             continue;
         }
+        params.sketch.refusal(&trouble, params.radius);
         let Trouble::Places { ref places, .. } = trouble else { return Err(trouble) };
         let first = *at_first.get_or_insert(places.len());
         let hopeless = round >= TELLING && places.len() > FEW && 2 * places.len() > first;
@@ -308,95 +319,6 @@ fn attempt(
     Err(Trouble::at("the blend does not settle", vec![]))
 }
 
-/// Chord length along and across: matched to the input's edges, within one and two tenths of the radius, or less where
-/// the tolerance asks for it.
-fn step_length(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params) -> f64 {
-    // An arc of radius r has the sagitta s on a chord of √(8·s·r); 0.005·r is that of 0.2·r.
-    let widest = params.radius * params.radii.least() * (8.0 * params.tolerance.clamp(1e-6, 0.005)).sqrt();
-    let mut edges: Vec<f64> = curves
-        .iter()
-        .flat_map(|c| &c.halfedges)
-        .flat_map(|&h| mesh.ring(mesh.tail(h)))
-        .map(|h| mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h))))
-        .collect();
-    edges.sort_by(f64::total_cmp);
-    edges.get(edges.len() * 3 / 4).map_or(widest, |&e| (1.2 * e).clamp(0.5 * widest, widest))
-}
-
-/// How far ahead of a curve's end its sides are kept apart, in radii.
-const REACH_AHEAD: f64 = 6.0;
-/// Length over which a ball runs out, in radii, and its share of the curve where that is short.
-const RUN_OUT: (f64, f64) = (4.0, 0.4);
-/// Share of the radius that a ball has left at the very end.
-const TIP: f64 = 0.03;
-
-fn roll_missing(
-    mesh: &Connected<TriMesh>,
-    curves: &[BlendCurve],
-    network: &Network,
-    params: &Params,
-    mends: &Mends,
-    step: f64,
-    rails: &mut [Option<Rail>],
-) -> Result<(), Trouble> {
-    let spine_params = |curve: usize| spine::Params {
-        radius: running_out(mesh, curves, network, curve, mends.field(curve)),
-        walls: network.walls(mesh, curve),
-        alpha: params.alpha,
-        solver: params.solver,
-        step,
-        longest: if curves[curve].closed {
-            step
-        } else {
-            (curves[curve].length(mesh) / 64.0).clamp(step, (4.0 * params.radius).max(step))
-        },
-        sagitta: 0.2 * params.tolerance,
-        softenings: mends.softenings.clone(),
-        ..spine::Params::new(params.radius)
-    };
-    let rolled: Vec<_> = rails
-        .par_iter()
-        .enumerate()
-        .map(|(i, rail)| rail.is_none().then(|| roll(mesh, &curves[i], curves, &spine_params(i))))
-        .collect();
-    let mut places = Vec::new();
-    for (rail, rolled) in rails.iter_mut().zip(rolled) {
-        match rolled {
-            None => {}
-            Some(Ok(r)) => *rail = Some(r),
-            Some(Err(e)) => match (&e, e.place()) {
-                (
-                    spine::Error::NoStart { .. }
-                    | spine::Error::Stuck { .. }
-                    | spine::Error::Astray { .. }
-                    | spine::Error::NoLoop { .. }
-                    | spine::Error::Folded { .. },
-                    Some(at),
-                ) => {
-                    places.push(at);
-                }
-                _ => return Err(Trouble::Spine(e)),
-            },
-        }
-    }
-    if places.is_empty() { Ok(()) } else { Err(Trouble::at("the ball cannot roll on", places)) }
-}
-
-/// The radius along a curve, which dwindles where the curve runs out.
-fn running_out(
-    mesh: &Connected<TriMesh>,
-    curves: &[BlendCurve],
-    network: &Network,
-    curve: usize,
-    mut radius: RadiusField,
-) -> RadiusField {
-    let extent = (RUN_OUT.0 * radius.base).min(RUN_OUT.1 * curves[curve].length(mesh));
-    let nodes = network.ends[curve].iter().flatten().map(|&n| &network.nodes[n]);
-    let tips = nodes.filter(|n| matches!(n.kind, Kind::RunOut { .. }));
-    radius.dips.extend(tips.map(|n| Dip { at: mesh.position(n.vertex), factor: TIP, extent }));
-    radius
-}
-
 /// One pass of all later stages over finished rails.
 fn assemble(
     mesh: &Connected<TriMesh>,
@@ -411,6 +333,11 @@ fn assemble(
         Fineness { tolerance: params.tolerance, chord: step, reach: params.reach, sides: params.radii.sides };
     let ends = Ends { mesh, curves, network, profile: &params.profile, fineness };
     let layout = ends.lay_out(rails, &distinct(rails, step))?;
+    for (curve, stretch) in curves.iter().zip(&layout.stretches) {
+        if let Some(stretch) = stretch {
+            params.sketch.page(mesh, curve).stretch(stretch, &params.profile, fineness);
+        }
+    }
     let opened = cut_linkages(mesh, network, &layout, params.snap, params.radius, watch)?;
     let cut = &opened.embedded.mesh;
     let (mut strips, mut new_points) = (Vec::with_capacity(rails.len()), Vec::new());
@@ -425,6 +352,7 @@ fn assemble(
         let strip = stretch.as_ref().map(sweep_along);
         if let Some(strip) = &strip {
             new_points.extend_from_slice(&strip.piece.points);
+            params.sketch.page(mesh, &curves[i]).draw("strip", || piece_of(&strip.piece, cut, &new_points));
             folds.extend_from_slice(&strip.folds);
         }
         strips.push(strip);
@@ -438,6 +366,7 @@ fn assemble(
             |v: VertexId| if v.0 < first_new { cut.position(v) } else { new_points[(v.0 - first_new) as usize] };
         let patch = fill(corner, joints, &layout.stretches, &strips, first_new + new_points.len() as u32, position)?;
         new_points.extend_from_slice(&patch.points);
+        params.sketch.draw(&format!("corner-{}", patches.len()), || piece_of(&patch, cut, &new_points));
         patches.push(patch);
     }
     let connected = Connected::new(cut)

@@ -25,14 +25,16 @@ mod sides;
 mod surface;
 
 use super::linkage::Opened;
+use super::rolling::step_length;
 use super::sew::sew;
+use super::sketch::{Drawing, Page};
 use super::trouble::Trouble;
-use super::{Blended, Error, Overlap, Params, Radii, check, step_length};
+use super::{Blended, Error, Overlap, Params, Radii, check};
 use glam::DVec3;
 use level::level_curves;
 use mark::scalar;
 use mesh_core::{
-    Adjacency, Connected, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, Watch,
+    Adjacency, Connected, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, Watch,
 };
 use piece::{CutOut, cut_out, kept_chords, put_back};
 use profile_nurbs::Profile;
@@ -73,6 +75,7 @@ pub(crate) fn blend(
     params: &Params,
     watch: &Watch,
 ) -> Result<Blended, Error> {
+    let [first, ..] = curves else { return Err(Error::NoCurves) };
     if curves.iter().any(|c| !c.closed) {
         return Err(Error::NotByField("use --surface stitch for open ones"));
     }
@@ -87,9 +90,11 @@ pub(crate) fn blend(
     let mut radius = RadiusField::constant(params.radius);
     let mut spots: Vec<(DVec3, u32)> = vec![];
     let mut earlier = vec![];
+    params.sketch.begin(mesh, curves);
+    let page = params.sketch.page(mesh, first);
     for round in 0.. {
         watch.step("blend", round as f64 / ROUNDS as f64)?;
-        let trouble = match attempt(&sides, &radius, edge, params, &mut earlier, watch) {
+        let trouble = match attempt(&sides, &radius, edge, params, &mut earlier, page, watch) {
             Ok(mut blended) => {
                 blended.full_share = full_share(mesh, curves, &radius);
                 blended.shrunk = radius.dips.iter().map(|d| (d.at, radius.at(d.at).0)).collect();
@@ -97,6 +102,7 @@ pub(crate) fn blend(
             }
             Err(trouble) => trouble,
         };
+        params.sketch.refusal(&trouble, params.radius);
         let places = match &trouble {
             Trouble::Places { places, .. } if round < ROUNDS && params.overlap == Overlap::Shrink => places,
             _ => return Err(trouble.into_error(params.radius)),
@@ -169,6 +175,7 @@ fn attempt(
     edge: f64,
     params: &Params,
     earlier: &mut Vec<Drawn>,
+    page: Page<'_>,
     watch: &Watch,
 ) -> Result<Blended, Trouble> {
     let mesh = sides.mesh;
@@ -184,6 +191,8 @@ fn attempt(
     }
     let how = EmbedParams { snap: 0.15, reach: params.snap.max(SNAP) * radius.base };
     let embedded = embed(mesh, &loops, &how, watch).map_err(refusal)?;
+    let chain = |c: &Vec<VertexId>| (c.iter().map(|&v| embedded.mesh.positions[v.index()]).collect(), true);
+    page.draw_field("linkages", || Drawing::Lines(embedded.curves.iter().map(chain).collect()));
     let cut = Connected::new(&embedded.mesh)
         .map_err(|e| Trouble::at("the cut mesh is not a manifold", e.place.into_iter().collect()))?;
     let removed = enclosed(sides, &cut, &embedded)?;
@@ -200,6 +209,7 @@ fn attempt(
         })
         .collect();
     *earlier = drawn.into_iter().collect::<Result<_, _>>()?;
+    page.draw_field("surface", || Drawing::together(earlier.iter().map(|d| &d.made)));
     let mut first_new = embedded.mesh.vertex_count() as u32;
     let mut back = Vec::with_capacity(pieces.len());
     for (piece, drawn) in pieces.iter().zip(earlier.iter()) {

@@ -5,26 +5,41 @@ use super::border::outline;
 use super::refusal::Refusal;
 use super::region::Region;
 use super::target::Target;
+use crate::blend::sketch::{Drawing, Page};
 use glam::{DVec2, DVec3};
-use mesh_core::{Adjacency, Connected, Faces, HalfedgeId, TriMesh};
+use mesh_core::{Adjacency, Connected, Faces, HalfedgeId, TriMesh, VertexId};
 use param_conformal::{Error as MapError, Outline, RingMap, Weights, map_ring_with, relax};
 
 /// How far an edge may stand off the surface, in radii: an arc's edge that turns by 63 degrees.
 const MOST_SAGITTA: f64 = 0.15;
 
 /// The new position of each vertex of the region.
-pub(super) fn settle(region: &Region, target: &Target, params: &Params) -> Result<Vec<DVec3>, Refusal> {
+pub(super) fn settle(region: &Region, target: &Target, params: &Params, page: Page<'_>) -> Result<Vec<DVec3>, Refusal> {
     let (cut, outline) = outline(region, target)?;
     let mut map = flatten(region, &cut, &outline, params)?;
     relax(&region.local, &mut map, |p| target.point(p), &params.relaxation);
+    page.draw("domain", || Drawing::Mesh(flat(region, &map)));
     let distortion = map.distortion(&region.local);
     if let Some(&face) = distortion.flipped.first() {
         let at = region.local.mesh().triangle(face).iter().sum::<DVec3>() / 3.0;
         return Err(Refusal::Flipped { face: region.faces[face.index()], at, count: distortion.flipped.len() });
     }
     let points: Vec<DVec3> = map.points.as_slice().iter().map(|&p| target.point(p)).collect();
+    page.draw("surface", || {
+        Drawing::Mesh(TriMesh { positions: points.clone(), faces: region.local.mesh().faces.clone() })
+    });
     check_fineness(region, target, &map, &points)?;
     Ok(points)
+}
+
+/// The region in the plane: t along x, the way across along y; cut open, so that every corner is a vertex of its own.
+fn flat(region: &Region, map: &RingMap) -> TriMesh {
+    let corners = (0..3 * region.local.face_count()).map(HalfedgeId::from);
+    let face = |f: usize| [0, 1, 2].map(|k| VertexId::from(3 * f + k));
+    TriMesh {
+        positions: corners.map(|h| map.corner(&region.local, h).extend(0.0)).collect(),
+        faces: (0..region.local.face_count()).map(face).collect(),
+    }
 }
 
 /// Conformal where that turns no triangle over; else with equal weights, from where smoothing goes on.

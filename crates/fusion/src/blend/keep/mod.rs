@@ -18,6 +18,7 @@ mod target;
 
 pub use refusal::Refusal;
 
+use super::sketch::Drawing;
 use super::{Blended, Error, Params as BlendParams, sew};
 use domain::settle;
 use glam::DVec3;
@@ -28,7 +29,7 @@ use mesh_core::{
 use param_conformal::{RelaxParams, Seam};
 use rayon::prelude::*;
 use region::Region;
-use spine::{BlendCurve, Rail, roll};
+use spine::{BlendCurve, Rail, roll_or_halt};
 use target::Target;
 
 /// How the vertices of a region find their places on the surface.
@@ -62,18 +63,26 @@ pub fn blend(
     how: &Params,
     watch: &Watch,
 ) -> Result<Blended, Error> {
+    params.sketch.begin(mesh, curves);
     let rails = roll_all(mesh, curves, params, how)?;
     watch.step("blend", 0.3)?;
     let mut regions = Vec::with_capacity(curves.len());
     let mut places = region::Places::new(mesh);
     for (curve, rail) in curves.iter().zip(&rails) {
         let target = Target::new(rail, params)?;
+        let page = params.sketch.page(mesh, curve);
+        page.draw("profiles", || target.profiles());
         let region = Region::around(mesh, curve, rail, &target, &mut places)?;
+        page.draw("region", || Drawing::Mesh(region.local.mesh().clone()));
         regions.push((region, target));
     }
     apart(mesh, &regions)?;
     watch.step("blend", 0.5)?;
-    let settled: Vec<_> = regions.par_iter().map(|(region, target)| settle(region, target, how)).collect();
+    let settled: Vec<_> = regions
+        .par_iter()
+        .zip(curves)
+        .map(|((region, target), curve)| settle(region, target, how, params.sketch.page(mesh, curve)))
+        .collect();
     let mut positions = mesh.mesh().positions.clone();
     for ((region, _), settled) in regions.iter().zip(settled) {
         for (&v, p) in region.vertices.iter().zip(settled?) {
@@ -114,7 +123,10 @@ fn roll_all(
             let (alpha, solver) = (params.alpha, params.solver);
             let rolling =
                 spine::Params { radius: field.clone(), alpha, solver, step, ..spine::Params::new(params.radius) };
-            roll(mesh, curve, curves, &rolling)
+            roll_or_halt(mesh, curve, curves, &rolling).map_err(|halt| {
+                params.sketch.page(mesh, curve).halt(mesh, &halt);
+                halt.error
+            })
         };
         let step = (curve.length(mesh) / f64::from(how.samples.max(8))).min(0.5 * params.radius);
         let rail = with_step(step)?;
@@ -123,7 +135,9 @@ fn roll_all(
         let wanted = (params.tolerance * params.radius).max(edge * edge / (32.0 * params.radius));
         // Heights fall as the square of the step.
         let refined = (chord_height(&rail) / wanted).sqrt();
-        if refined > 1.0 { with_step(step / refined.min(FINEST)) } else { Ok(rail) }
+        let rail = if refined > 1.0 { with_step(step / refined.min(FINEST))? } else { rail };
+        params.sketch.page(mesh, curve).rail(mesh, &rail);
+        Ok::<_, spine::Error>(rail)
     });
     rolled.collect::<Result<_, _>>().map_err(Error::from)
 }

@@ -2,6 +2,7 @@
 
 use super::refusal::Refusal;
 use crate::blend::Params as BlendParams;
+use crate::blend::sketch::Drawing;
 use crate::blend::strip::section;
 use glam::{DVec2, DVec3};
 use profile_nurbs::Sweep;
@@ -69,6 +70,13 @@ impl Target {
         let across = lengths.iter().sum::<f64>() / n as f64;
         let radius = samples.iter().map(|s| s.radius).fold(f64::INFINITY, f64::min);
         Ok(Self { sweep, stations, feet, outward, longest, even, across, turns, bend, radius })
+    }
+
+    /// The profiles, to look at.
+    pub fn profiles(&self) -> Drawing {
+        let point = |t: f64, k: usize| self.point(DVec2::new(t, self.across * k as f64 / STEPS as f64));
+        let profile = |&t: &f64| ((0..=STEPS).map(|k| point(t, k)).collect(), false);
+        Drawing::Lines(self.stations[..self.stations.len() - 1].iter().map(profile).collect())
     }
 
     /// Length all round, in t.
