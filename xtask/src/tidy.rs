@@ -46,7 +46,21 @@ const ARROWS: &[(&str, &[&str])] = &[
             "toml",
         ],
     ),
-    ("fusion-cli", &["fusion", "mesh-io", "anstyle", "clap", "ctrlc", "indicatif", "serde_json", "tempfile"]),
+    (
+        "fusion-cli",
+        &[
+            "fusion",
+            "mesh-io",
+            "anstyle",
+            "clap",
+            "clap_complete",
+            "clap_mangen",
+            "ctrlc",
+            "indicatif",
+            "serde_json",
+            "tempfile",
+        ],
+    ),
     (
         "xtask",
         &[

@@ -84,6 +84,10 @@ pub enum Verb {
     Render(Render),
     /// Build the showcase models with their reports and pictures; needs no input
     Demo(Demo),
+    /// Print a script that lets a shell complete verbs, options and files
+    Completions(Completions),
+    /// Print the manual page, or write one for every verb
+    Man(Man),
 }
 
 /// How standard input is read.
@@ -383,6 +387,19 @@ pub struct Demo {
     /// The folder to fill
     #[arg(short, long, value_name = "DIR", default_value = "demo")]
     pub output: PathBuf,
+}
+
+#[derive(Args)]
+pub struct Completions {
+    /// The shell
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Args)]
+pub struct Man {
+    /// Write the pages of the program and of every verb into this folder
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
 }
 
 /// Gives `--weld` its default where a file name follows it, which clap would take for the tolerance, and repeats `--path` before each

@@ -59,6 +59,8 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Verb::Cut(args) => verbs::cut::run(&session, &args),
         Verb::Run(args) => verbs::run::run(&session, &args),
         Verb::Render(args) => verbs::render::run(&session, &args),
+        Verb::Completions(args) => verbs::completions::run(&args),
+        Verb::Man(args) => verbs::man::run(&session, &args),
         Verb::Demo(args) => verbs::demo::run(&session, &args),
         Verb::Detail(args) => verbs::detail::run(&session, &args),
         Verb::Cluster(args) => verbs::cluster::run(&session, &args),

@@ -2,7 +2,7 @@
 
 use crate::outcome::{Outcome, Promise};
 use crate::validity::as_written;
-use crate::{Counts, Error, Region, Report};
+use crate::{Counts, Error, Region, Report, extent};
 use detail_transfer::{Exemplar, Transferred, roughness, transfer};
 use glam::DVec3;
 use mesh_core::{
@@ -31,6 +31,7 @@ const STAGE: &str = "detail";
 /// # Errors
 /// [`crate::Error`]: inputs that are not manifold, regions that are not there, detail that cannot be carried, a result that meets itself.
 pub fn detail(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcome, Error> {
+    extent::check(parts)?;
     let mut report = Report::new(STAGE, parts.iter().map(|m| Counts::of("", &m.mesh)).collect());
     let meshes = report.time("connect", || connect(parts))?;
     if parts.is_empty() {

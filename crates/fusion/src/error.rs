@@ -27,6 +27,12 @@ pub enum Error {
         /// Why.
         source: tri_intersect::Error,
     },
+    /// The models are too large or too small for what is to be measured on them.
+    #[error("the models measure {size:e}; this works from 1e-100 to 1e100, so change their unit of length")]
+    Extent {
+        /// The diagonal of the box around all, or the largest coordinate, in model units.
+        size: f64,
+    },
     /// No feature curve can be blended.
     #[error("{0}")]
     NoCurve(String, Option<DVec3>),
@@ -112,6 +118,7 @@ impl Error {
             | Self::Remesh(_)
             | Self::Blend(_)
             | Self::TooFew(_)
+            | Self::Extent { .. }
             | Self::Recipe(_)
             | Self::Cancelled(_) => None,
         }

@@ -1,7 +1,7 @@
 //! Joins solids, and blends the seams where asked: from the contents of files to what a file will hold.
 
 use crate::outcome::{Outcome, account, finish, surviving};
-use crate::{Counts, Error, Invalid, Report, blend};
+use crate::{Counts, Error, Invalid, Report, blend, extent};
 use mesh_core::{Connected, Faces, Origins, Stage, TriMesh, Watch};
 use mesh_io::{Format, Model};
 use spine::BlendCurve;
@@ -23,6 +23,9 @@ pub struct Params {
 /// # Errors
 /// [`Error`]; a radius that does not fit comes with a place and a radius that does.
 pub fn join(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcome, Error> {
+    if params.blend.is_some() {
+        extent::check(parts)?;
+    }
     surviving(params.blend.as_ref(), |blend| overlay_all(parts, params, blend, watch))
 }
 

@@ -21,7 +21,7 @@
 //! | `cluster/` | polyhedra rounded cluster by cluster |
 //! | `detail.rs` | geometry detail from region to region |
 //! | `recipe/` | whole models as TOML files |
-//! | `outcome.rs`, `validity.rs`, `error.rs` | how every pipeline ends |
+//! | `extent.rs`, `outcome.rs`, `validity.rs`, `error.rs` | how every pipeline begins and ends |
 //! | `remeshing.rs`, `region.rs` | remeshing of a surface or a region of it; regions |
 //! | `repair.rs` | welding, orientation, taking apart |
 //! | `info.rs` | counts, measures and defects of one mesh |
@@ -39,6 +39,7 @@ pub mod compose;
 pub mod cut;
 pub mod detail;
 mod error;
+mod extent;
 pub mod features;
 mod info;
 pub mod join;

@@ -22,6 +22,8 @@ pub struct Outcome {
 pub(crate) enum Promise {
     /// Oriented, 2-manifold and closed.
     Closed,
+    /// Oriented and 2-manifold, with this many boundary loops.
+    Openings(usize),
     /// Oriented and 2-manifold.
     Manifold,
 }

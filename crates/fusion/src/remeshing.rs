@@ -2,7 +2,7 @@
 
 use crate::outcome::{Outcome, Promise};
 use crate::validity::as_written;
-use crate::{Counts, Error, Region, Report, carry};
+use crate::{Counts, Error, Region, Report, carry, extent};
 use glam::DVec3;
 use mesh_core::{
     Adjacency, Bounds, Connected, FaceId, FaceMap, FaceOrigin, Faces, Origins, Stage, TriMesh, VertexOrigin, Watch,
@@ -91,6 +91,7 @@ const RETRIES: i32 = 10;
 /// # Errors
 /// [`Error`].
 pub fn remesh(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, Error> {
+    extent::check(std::slice::from_ref(part))?;
     let mut report = Report::new("remesh", vec![Counts::of("", &part.mesh)]);
     let mut mesh = report
         .time("connect", || Connected::new(part.mesh.clone()))

@@ -2,11 +2,11 @@
 
 use crate::blend::{self, Limit};
 use crate::features::{self, Convexity, FeatureCurve, feature_curves, nearest_curve};
-use crate::outcome::{Outcome, account, finish, surviving};
+use crate::outcome::{Outcome, Promise, account, finish_as, surviving};
 use crate::picks::{self, Picked};
-use crate::{Counts, Error, Report};
+use crate::{Counts, Error, Report, extent};
 use glam::DVec3;
-use mesh_core::{Adjacency, Connected, Faces, HalfedgeId, TriMesh, VertexId, Watch};
+use mesh_core::{Adjacency, Connected, Faces, HalfedgeId, TriMesh, VertexId, Watch, boundary_loops};
 use mesh_io::{Format, Model};
 use rayon::prelude::*;
 use spine::BlendCurve;
@@ -32,6 +32,7 @@ pub struct Params {
 /// # Errors
 /// [`Error`]; a radius that does not fit comes with a place and a radius that does.
 pub fn round(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, Error> {
+    extent::check(std::slice::from_ref(part))?;
     surviving(Some(&params.blend), |blend| round_once(part, params, blend.unwrap_or(&params.blend), watch))
 }
 
@@ -41,21 +42,23 @@ pub fn round(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, Er
 /// # Errors
 /// As [`round`]; [`Error::Blend`] if no radius works.
 pub fn max_radius(part: &Model, params: &Params, watch: &Watch) -> Result<Limit, Error> {
+    extent::check(std::slice::from_ref(part))?;
     let mesh = Connected::new(part.mesh.clone()).map_err(|source| Error::NotManifold { part: 0, source })?;
     let curves = choose(&mesh, params)?;
     Ok(blend::max_radius(&mesh, &curves, &params.blend, watch)?)
 }
 
-/// The same for each of `curves` alone; `None` where a thousandth of the curve's box is too large already, and for curves of more than 40 edges or after 400
-/// edges in all: a list is to be made in seconds. Ask for those alone.
+/// The same for each of `curves` alone; `None` where a 256th of the curve's box is too large already, and for curves of more
+/// than 40 edges or after 400 edges in all: a list is to be made in seconds. Ask for those alone.
 ///
 /// # Errors
-/// [`Error::Cancelled`].
+/// [`Error::Extent`], [`Error::Cancelled`].
 pub fn max_radius_of_each(
     mesh: &Connected<TriMesh>,
     curves: &[FeatureCurve],
     watch: &Watch,
 ) -> Result<Vec<Option<Limit>>, Error> {
+    extent::check_box(mesh_core::bounds(mesh))?;
     let mut edges = 0;
     let due = |curve: &FeatureCurve| {
         let own = curve.halfedges.len();
@@ -70,7 +73,7 @@ pub fn max_radius_of_each(
             return Ok(None);
         }
         let chain = BlendCurve { halfedges: curve.halfedges.clone(), closed: curve.closed };
-        match blend::max_radius_above(0, mesh, &[chain], &blend::Params::new(1.0), watch) {
+        match blend::max_radius_above(HALVINGS, mesh, &[chain], &blend::Params::new(1.0), watch) {
             Ok(limit) => Ok(Some(limit)),
             Err(blend::Error::Cancelled(c)) => Err(c.into()),
             Err(_) => Ok(None),
@@ -82,6 +85,8 @@ pub fn max_radius_of_each(
 /// Most edges of a curve in a list of radii, and of all its curves.
 const LONGEST: usize = 40;
 const ALL: usize = 400;
+/// How often the first radius is halved for a list.
+const HALVINGS: u32 = 2;
 
 fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch) -> Result<Outcome, Error> {
     let mut report = Report::new("blend", vec![Counts::of("", &part.mesh)]);
@@ -92,7 +97,11 @@ fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch)
     report.figures.insert("curves".into(), curves.len() as f64);
     let blended = report.time("blend", || blend::blend(&mesh, &curves, how, watch))?;
     account(&blended, how, &mut report);
-    finish(std::slice::from_ref(part), blended.mesh, blended.origins, params.format, report, watch)
+    let promise = match boundary_loops(&mesh).len() {
+        0 => Promise::Closed,
+        count => Promise::Openings(count),
+    };
+    finish_as(promise, std::slice::from_ref(part), blended.mesh, blended.origins, params.format, report, watch)
 }
 
 fn choose(mesh: &Connected<TriMesh>, params: &Params) -> Result<Vec<BlendCurve>, Error> {

@@ -49,9 +49,18 @@ pub(crate) fn as_written(
         return invalid(defects.to_string().replace('\n', ";"), at);
     }
     let closed = defects.is_closed();
-    if !closed && promise == Promise::Closed {
-        let hole = || Some(*boundary_loops(&Connected::new(shape).ok()?).first()?.first()?);
-        return invalid("it has a boundary".into(), hole().map(|h| shape.triangle(h.face())[h.corner()]));
+    let promised = match promise {
+        Promise::Closed => Some(0),
+        Promise::Openings(count) => Some(count),
+        Promise::Manifold => None,
+    };
+    if let Some(promised) = promised.filter(|&p| p > 0 || !closed) {
+        let loops = boundary_loops(&Connected::new(shape).map_err(Invalid::from)?);
+        if loops.len() != promised {
+            let at = loops.last().and_then(|l| l.first()).map(|h| shape.triangle(h.face())[h.corner()]);
+            let reason = format!("it has {} boundary loops instead of {promised}", loops.len());
+            return invalid(reason, at);
+        }
     }
     let moved = |f: FaceId| rounded.as_ref().is_some_and(|r| r.triangle(f) != mesh.triangle(f));
     let changed: Vec<FaceId> =

@@ -44,7 +44,14 @@ impl Bounds {
 
     /// Length of the diagonal; 0 when empty.
     pub fn diagonal(&self) -> f64 {
-        if self.is_empty() { 0.0 } else { (self.max - self.min).length() }
+        if self.is_empty() {
+            return 0.0;
+        }
+        let sides = self.max - self.min;
+        let (length, largest) = (sides.length(), sides.max_element());
+        // Squares of sides beyond 1e154 overflow, those of sides below 1e-154 vanish.
+        let squared = length.is_finite() && length > 1e-150;
+        if squared || largest == 0.0 { length } else { largest * (sides / largest).length() }
     }
 
     /// The middle.

@@ -2,6 +2,7 @@
 
 pub mod blend;
 pub mod cluster;
+pub mod completions;
 pub mod compose;
 pub mod convert;
 pub mod cut;
@@ -10,6 +11,7 @@ pub mod detail;
 pub mod features;
 pub mod info;
 pub mod join;
+pub mod man;
 pub mod remesh;
 pub mod render;
 pub mod run;

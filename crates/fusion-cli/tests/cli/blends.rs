@@ -54,6 +54,18 @@ fn pappus(area: f64, moment: f64) -> f64 {
     2.0 * 2.0 * PI * (area * RADIUS.powi(2) - moment * RADIUS.powi(3))
 }
 
+/// What is open stays open, by as many loops.
+#[test]
+fn an_open_box_is_blended() {
+    let bench = Bench::new();
+    let open: String = cube([0.0; 3], 1.0).replace("8 12 0", "8 10 0").lines().take(20).collect::<Vec<_>>().join("\n");
+    bench.file("open.off", &open);
+    bench.run("blend open.off -o out.off --radius 0.1 --report r.json").expect(0);
+    assert_eq!(json(&bench.read("r.json"))["validity"]["closed"], false);
+    let info = json(bench.run("info out.off --json").expect(0).text());
+    assert_eq!((info["boundary_loops"].as_array().map(Vec::len), &info["self_intersections"]), (Some(1), &0.into()));
+}
+
 #[test]
 fn profiles_take_away_what_they_should() {
     let bench = bench();

@@ -3,9 +3,11 @@
 mod blends;
 mod cluster;
 mod composes;
+mod corruption;
 mod details;
 mod drawings;
 mod exit_codes;
 mod recipes;
 mod support;
 mod verbs;
+mod writing;

@@ -102,6 +102,20 @@ fn a_picture_is_a_png() {
     assert!(bytes.starts_with(b"\x89PNG") && bytes[16..24] == [0, 0, 0, 64, 0, 0, 0, 64]);
 }
 
+#[test]
+fn shells_and_manuals_know_every_verb() {
+    let bench = Bench::new();
+    for shell in ["bash", "zsh", "fish", "powershell"] {
+        let script = bench.run(&format!("completions {shell}")).expect(0);
+        assert!(script.text().contains("fusion-cli") && script.text().contains("max-radius"), "{shell}");
+    }
+    assert!(bench.run("man").expect(0).text().contains("Exit codes"));
+    bench.run("man -o pages").expect(0);
+    let blend = bench.read("pages/fusion-cli-blend.1");
+    assert!(blend.contains("max\\-radius") && blend.contains("threads"), "{blend}");
+    assert_eq!(fs::read_dir(bench.path("pages")).unwrap().count(), 18);
+}
+
 #[cfg(unix)]
 #[test]
 fn devices_are_written_not_replaced() {

@@ -18,14 +18,15 @@ pub struct Limit {
 
 /// Ratio of the least radius that failed to the largest that worked at which the search ends.
 const CLOSE_ENOUGH: f64 = 1.005;
-/// First radius tried, as a share of the diagonal, and by what it grows until one fails.
-const START: f64 = 1e-3;
+/// First radius tried, as a share of the diagonal, and by what it grows until one fails. Smaller balls cost more, as the
+/// inverse square of the radius.
+const START: f64 = 1.0 / 64.0;
 const GROWTH: f64 = 1.5;
 /// How often the first radius is halved when it fails.
-const HALVINGS: u32 = 6;
+const HALVINGS: u32 = 10;
 
-/// The end of the interval from 0 in which every radius can be blended along `curves` with [`Overlap::Error`]: radii are
-/// tried from small ones upwards until one fails, and the gap is halved.
+/// The end of the interval in which every radius can be blended along `curves` with [`Overlap::Error`]: radii are tried
+/// from a 64th of the curves' box downwards until one works, then upwards until one fails, and the gap is halved.
 ///
 /// # Errors
 /// [`Error::DoesNotFit`] if even the smallest fails; those without a place as [`super::blend`].

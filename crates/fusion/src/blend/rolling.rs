@@ -20,7 +20,7 @@ pub(super) fn step_length(mesh: &Connected<TriMesh>, curves: &[BlendCurve], para
         .map(|h| mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h))))
         .collect();
     edges.sort_by(f64::total_cmp);
-    edges.get(edges.len() * 3 / 4).map_or(widest, |&e| (1.2 * e).clamp(0.5 * widest, widest))
+    edges.get(edges.len() * 3 / 4).map_or(widest, |&e| (1.2 * e).max(0.5 * widest).min(widest))
 }
 
 /// How far ahead of a curve's end its sides are kept apart, in radii.

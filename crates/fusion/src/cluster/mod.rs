@@ -14,7 +14,7 @@ pub use edge_cluster::{CoverParams, Degree, Params as PatchParams, PolyhedronPar
 pub use file::{Degrees, Entry, FileError, MoveEntry, clusters_from_toml};
 
 use crate::outcome::{Outcome, finish};
-use crate::{Counts, Error, Report};
+use crate::{Counts, Error, Report, extent};
 use edge_cluster::{Blend, Part, Place, Polyhedron, Shape, blend, contact_slopes, cover};
 use mesh_core::{FaceOrigin, Origins, VertexId, VertexOrigin, Watch};
 use mesh_io::{Format, Groups, Model};
@@ -97,6 +97,7 @@ const SHORTER: [f64; 4] = [1.0, 0.8, 0.6, 0.4];
 /// # Ok::<(), fusion::Error>(())
 /// ```
 pub fn cluster(part: &Model, params: &Params, watch: &Watch) -> Result<Clustered, Error> {
+    extent::check(std::slice::from_ref(part))?;
     let mut report = Report::new("cluster", vec![Counts::of("", &part.mesh)]);
     let mut notes = vec![];
     let polygon_of = part.polygons.as_ref().filter(|p| p.fit(&part.mesh)).map(|p| p.of_face.as_slice());

@@ -26,7 +26,7 @@ pub use silhouette::{Silhouette, SilhouetteCurve, SilhouettePoint};
 pub(crate) use weld::TRANSITION;
 
 use crate::outcome::{Outcome, Promise, finish_as};
-use crate::{Counts, Report};
+use crate::{Counts, Report, extent};
 use adjust::adjust;
 use constraints::{constraints, fitting};
 use glam::DVec3;
@@ -152,6 +152,7 @@ const FINENESS: [f64; 3] = [1.0, 1.5, 2.2];
 /// # Errors
 /// [`crate::Error`]: parts that are not manifold or badly posed, a surface that does not join them or crosses them.
 pub fn compose(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcome, crate::Error> {
+    extent::check(parts)?;
     let mut report = Report::new("compose", parts.iter().map(|m| Counts::of("", &m.mesh)).collect());
     let given = report.time("connect", || connect(parts))?;
     let trimmed = params.adjust.map(|d| report.time("adjust", || adjust(&given, params, d, watch))).transpose()?;

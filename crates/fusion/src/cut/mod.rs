@@ -30,7 +30,7 @@ mod smooth;
 pub use error::Error;
 
 use crate::outcome::{Outcome, Promise, finish_as};
-use crate::{Counts, Report};
+use crate::{Counts, Report, extent};
 use glam::DVec3;
 use keep::{kept_faces, kept_side, submesh};
 use mesh_core::{Connected, Faces, Origins, Stage, TriMesh, Watch, boundary_loops};
@@ -145,6 +145,7 @@ impl Params {
 /// # Errors
 /// [`crate::Error`]; a cut that is not possible comes as [`Error`] with the place.
 pub fn cut(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, crate::Error> {
+    extent::check(std::slice::from_ref(part))?;
     let mut report = Report::new("cut", vec![Counts::of("", &part.mesh)]);
     let mut origins = Origins::identity(0, part.mesh.vertex_count(), part.mesh.face_count());
     let mut mesh = report
