@@ -1,6 +1,6 @@
 //! What each option of a blend changes.
 
-use crate::support::{Bench, Run, json};
+use crate::support::{Bench, Run, cube, json};
 use fusion::mesh_core::shapes;
 use glam::{DQuat, DVec3};
 use std::f64::consts::{FRAC_PI_4, PI};
