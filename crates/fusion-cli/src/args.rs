@@ -195,8 +195,9 @@ pub struct Blend {
     #[command(flatten)]
     pub source: Source,
     /// Radius of the ball; with `R1,R2` its centre keeps R1 from the side to the left of a curve and R2 from the other,
-    /// seen from outside along the points that `features` lists
-    #[arg(long, value_name = "R[,R2]", value_parser = radius, required_unless_present = "max_radius")]
+    /// seen from outside along the points that `features` lists. With `--profile sharp --near` on a fillet: what is rounded by
+    /// R or less is taken back to an edge [default there: as it is rounded at that place]
+    #[arg(long, value_name = "R[,R2]", value_parser = radius)]
     pub radius: Option<Radius>,
     /// Print the largest radius with which the curves can be blended, and what is in the way of a larger one; write nothing
     #[arg(long, conflicts_with_all = ["radius", "output"])]
@@ -207,7 +208,8 @@ pub struct Blend {
     /// Least angle between the normals of two neighbouring faces that makes their edge a feature
     #[arg(long, value_name = "DEG", default_value = "40", value_parser = angle)]
     pub angle: f64,
-    /// Blend only the feature curve nearest this point; may be given more than once
+    /// Blend only the feature curve nearest this point; may be given more than once. With `--profile sharp`, a place on a
+    /// fillet
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub near: Vec<DVec3>,
     /// Blend the curves in this file, as `features -o` writes them: points at vertices, or far apart, to be joined by the

@@ -13,11 +13,11 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 #[command(next_help_heading = "Blend options")]
 pub struct Rolling {
-    /// Cross-section of the blend: arc, g2 (curvature-continuous), chamfer, sharp, hermite, conic=W, whose apex weighs W
+    /// Cross-section of the blend [default: arc]: arc, g2 (curvature-continuous), chamfer, sharp, hermite, conic=W, whose apex weighs W
     /// times that of the arc (below 1 flatter, above 1 sharper), or a FILE with a NURBS curve (docs/keep.md). With
     /// `,reach=R` behind it the apex is moved out to R radii from the ball's centre
-    #[arg(long, value_name = "PROFILE", default_value = "arc", value_parser = section, requires = "radius")]
-    pub profile: Section,
+    #[arg(long, value_name = "PROFILE", value_parser = section)]
+    pub profile: Option<Section>,
     /// The radius at the place of a curve nearest to X,Y,Z; may be given more than once. Between such places it changes
     /// smoothly, to that of --radius at the ends of an open curve and half-way round a closed one with a single place
     #[arg(long, value_name = "X,Y,Z=R", value_parser = radius_at, requires = "radius", allow_hyphen_values = true)]
@@ -52,8 +52,8 @@ impl Rolling {
         let (radius, radii) = blend::Radii::of(radius.sides.map(|r| r.resolve(diagonal)), &at);
         Ok(blend::Params {
             radii,
-            profile: self.profile.curve.profile()?,
-            reach: self.profile.reach,
+            profile: self.profile.as_ref().map_or(Ok(Profile::Arc), |p| p.curve.profile())?,
+            reach: self.profile.as_ref().and_then(|p| p.reach),
             overlap: match self.overlap {
                 Overlap::Shrink => blend::Overlap::Shrink,
                 Overlap::Error => blend::Overlap::Error,
@@ -73,6 +73,12 @@ impl Rolling {
             sketch: if self.debug_geometry.is_some() { Sketch::new() } else { Sketch::default() },
             ..blend::Params::new(radius)
         })
+    }
+
+    /// Whether the section is the prolonged sides, as they are.
+    pub fn is_sharp(&self) -> bool {
+        let sharp = Section { curve: Curve::Known(Profile::Sharp), reach: None };
+        self.profile.as_ref() == Some(&sharp)
     }
 
     /// Makes the folder for drawings, if one is asked for, before any work is done.

@@ -1,6 +1,6 @@
 //! Why a pipeline gives no result.
 
-use crate::{Invalid, blend, compose, cut, recipe};
+use crate::{Invalid, blend, compose, cut, recipe, sharpen};
 use glam::DVec3;
 use mesh_core::{Cancelled, NotManifold};
 use tri_intersect::EmbedError;
@@ -42,6 +42,9 @@ pub enum Error {
     /// A seam is no closed chain of edges.
     #[error(transparent)]
     Seam(#[from] spine::Error),
+    /// A rounding cannot be sharpened.
+    #[error(transparent)]
+    Sharpen(#[from] sharpen::Refusal),
     /// The parts could not be composed.
     #[error(transparent)]
     Compose(#[from] compose::Error),
@@ -102,6 +105,7 @@ impl Error {
                 EmbedError::Apart { place, .. } | EmbedError::TooSmall { place, .. } => Some(*place),
                 _ => None,
             },
+            Self::Sharpen(refusal) => Some(refusal.place()),
             Self::Cluster(error) => error.place(),
             Self::Cut(error) => error.place(),
             Self::Detail(error) => error.place(),

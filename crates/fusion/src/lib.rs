@@ -15,6 +15,7 @@
 //! |---|---|
 //! | `join.rs` | union, difference and intersection, with blended seams |
 //! | `round.rs` | blends along feature curves |
+//! | `sharpen/` | fillets taken back to edges |
 //! | `compose/` | openings joined by one smooth surface |
 //! | `cut/` | cuts by planes and closed paths |
 //! | `blend/` | rolling-ball blends of curves |
@@ -54,6 +55,7 @@ pub mod remeshing;
 mod repair;
 mod report;
 pub mod round;
+pub mod sharpen;
 mod spread;
 mod validity;
 
@@ -77,6 +79,7 @@ pub use render;
 pub use repair::{Repair, repair};
 pub use report::{Counts, Quality, Report, Stage, Validity};
 pub use round::round;
+pub use sharpen::sharpen;
 pub use spine::{OffsetParams, Solver};
 pub use tri_intersect::Operation;
 pub use validity::Invalid;

@@ -95,6 +95,10 @@ pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Re
         *figure = figure.min(value);
     }
     *report.figures.entry("shrunk_places".into()).or_default() += blended.shrunk.len() as f64;
+    *report.figures.entry("run_outs".into()).or_default() += blended.run_outs.len() as f64;
+    for at in &blended.run_outs {
+        report.notes.push(format!("the blend runs out in a point at {at}, where no surface ends it"));
+    }
     for (at, what) in &blended.fallbacks {
         report.warnings.push(format!("the blend near {at} is made as a field: {what}"));
     }
@@ -125,6 +129,7 @@ mod tests {
             residual: 1e-12,
             shrunk: shrunk.to_vec(),
             fallbacks: vec![],
+            run_outs: vec![DVec3::ZERO],
             full_share,
         };
         let (params, mut report) = (blend::Params::new(0.5), Report::default());
@@ -134,6 +139,7 @@ mod tests {
         account(&blended(0.75, &[(DVec3::X, 0.25), (DVec3::Y, 0.35)]), &params, &mut report);
         account(&blended(0.9, &[(DVec3::Z, 0.4)]), &params, &mut report);
         assert_eq!((figures(&report), report.figures["strips"]), ([0.75, 0.25, 3.0], 3.0));
+        assert_eq!((report.figures["run_outs"], report.notes.len()), (3.0, 3));
         let warnings = report.warnings.join("\n");
         assert!(["[1, 0, 0]: one of radius 0.25", "0.35", "0.4"].iter().all(|w| warnings.contains(w)), "{warnings}");
     }

@@ -7,6 +7,9 @@ use fusion::{Error, Operation, join};
 
 /// Joins the inputs and writes the result.
 pub fn run(session: &Session, args: &Args, operation: Operation) -> Result<(), Failure> {
+    if args.radius.is_none() && args.rolling.profile.is_some() {
+        return Err(Failure::usage("--profile needs --radius R"));
+    }
     let destination = Destination::check(&args.target, session)?;
     args.rolling.prepare()?;
     let models = session.read_all(&args.inputs, &args.source)?;

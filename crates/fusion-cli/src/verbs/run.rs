@@ -12,8 +12,10 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     let text = std::fs::read_to_string(&args.recipe)
         .map_err(|e| Failure::unreadable(format!("cannot read the recipe {name}: {e}")))?;
     let malformed = |e: &fusion::recipe::Error| Failure::unreadable(format!("{name}: {e}"));
-    let recipe = Recipe::parse(&text).map_err(|e| malformed(&e))?;
+    let mut recipe = Recipe::parse(&text).map_err(|e| malformed(&e))?;
     let folder = args.recipe.parent().unwrap_or(Path::new(""));
+    let read = |path: &Path| std::fs::read_to_string(folder.join(path)).map_err(|e| e.to_string());
+    recipe.read_curves(read).map_err(|e| malformed(&e))?;
     let output = args.output.clone().unwrap_or_else(|| folder.join(&recipe.output));
     let target = Target { output, to: args.to.clone(), origins: args.origins.clone() };
     let destination = Destination::check(&target, session)?;

@@ -8,6 +8,7 @@ mod details;
 mod drawings;
 mod exit_codes;
 mod recipes;
+mod sharpens;
 mod support;
 mod verbs;
 mod writing;

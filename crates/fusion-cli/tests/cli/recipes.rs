@@ -90,3 +90,42 @@ fn a_path_cuts_in_two() {
     let error = bench.run("cut a.off -o out.off --path 0,0,1").expect(4);
     assert!(error.stderr.contains("two picks"), "{}", error.stderr);
 }
+
+/// Every key of a blend does what the option of that name does.
+#[test]
+fn blends_in_recipes_have_the_options_of_the_command_line() {
+    let bench = Bench::new();
+    let edge = r#"{"curves": [{"points": [[-0.5, 0.5, 0.5], [0.5, 0.5, 0.5]], "closed": false}]}"#;
+    bench.file("edge.json", edge);
+    for (keys, options) in [
+        ("radius = [0.1, 0.2]\nnear = [[0, 0.5, 0.5]]", "--radius 0.1,0.2 --near 0,0.5,0.5"),
+        (
+            "radius = 0.1\nradius_at = [{ at = [0.5, 0.5, 0.5], radius = 0.2 }]\ncurves = \"edge.json\"",
+            "--radius 0.1 --radius-at 0.5,0.5,0.5=0.2 --curves edge.json",
+        ),
+        (
+            "radius = \"5%\"\nprofile = \"hermite\"\nreach = 1.3\nspine = \"contact\"\nnear = [[0, 0.5, 0.5]]",
+            "--radius 5% --profile hermite,reach=1.3 --spine contact --near 0,0.5,0.5",
+        ),
+    ] {
+        let recipe =
+            format!("version = 1\noutput = \"r.off\"\n[[part]]\nname = \"a\"\nmesh = \"a.off\"\n[[blend]]\n{keys}\n");
+        bench.file("r.toml", &recipe);
+        bench.run("run r.toml").expect(0);
+        bench.run(&format!("blend a.off -o c.off {options}")).expect(0);
+        assert_eq!(bench.read("r.off"), bench.read("c.off"), "{keys}");
+    }
+    for (keys, says) in [
+        ("radius = [0.1, 0.0]", "radius"),
+        ("radius = 0.1\nradius_at = [{ at = [0, 0, 0], radius = -1 }]", "radius_at"),
+        ("radius = 0.1\ncurves = \"none.json\"", "none.json"),
+        ("radius = 0.1\nspine = \"paper\"", "offset"),
+        ("radius = 0.1\nreach = 0.0", "0.1"),
+    ] {
+        let recipe =
+            format!("version = 1\noutput = \"no.off\"\n[[part]]\nname = \"a\"\nmesh = \"a.off\"\n[[blend]]\n{keys}\n");
+        bench.file("r.toml", &recipe);
+        let run = bench.run("run r.toml").expect(3);
+        assert!(run.stderr.contains(says) && run.stderr.contains("line"), "{keys}: {}", run.stderr);
+    }
+}

@@ -155,6 +155,8 @@ pub struct Blended {
     pub shrunk: Vec<(DVec3, f64)>,
     /// Where sweeping failed and a field took its place: place, and what failed there.
     pub fallbacks: Vec<(DVec3, &'static str)>,
+    /// Where a curve ends alone with no surface to stop at, so that the blend runs out in a point.
+    pub run_outs: Vec<DVec3>,
     /// Share of the spine's length on which the ball has its full radius.
     pub full_share: f64,
 }
@@ -388,6 +390,7 @@ fn assemble(
         residual,
         shrunk: Vec::new(),
         fallbacks: Vec::new(),
+        run_outs: network.run_outs().map(|v| mesh.position(v)).collect(),
         full_share: 1.0,
     })
 }

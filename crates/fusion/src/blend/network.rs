@@ -111,6 +111,11 @@ impl Network {
         node.kind = onwards(mesh, &ring, reach);
     }
 
+    /// The ends at which the ball dwindles to nothing.
+    pub fn run_outs(&self) -> impl Iterator<Item = VertexId> {
+        self.nodes.iter().filter(|n| matches!(n.kind, Kind::RunOut { .. })).map(|n| n.vertex)
+    }
+
     /// Edges that end the sides of `curve`.
     pub fn walls(&self, mesh: &Connected<TriMesh>, curve: usize) -> Vec<EdgeId> {
         let nodes = self.ends[curve].iter().flatten().map(|&n| &self.nodes[n]);

@@ -2,10 +2,10 @@
 
 use super::rims::split_loop;
 use super::tables::{Creases, Depth, Part, PartCut, Plane, Silhouette};
-use super::values::{Length, Pose, profile};
+use super::values::{Length, Pose};
 use super::{Error, Recipe, Step};
 use crate::cut::{Cut, Keep, PathCut, PlaneCut};
-use crate::{blend, cluster, compose};
+use crate::{cluster, compose};
 use glam::DVec3;
 use mesh_io::Format;
 use std::ops::Range;
@@ -268,23 +268,6 @@ impl Recipe {
         })
     }
 
-    /// How the seam of a boolean is blended; `diagonal` is what lengths may be a share of.
-    pub(super) fn rolling_of_boolean(&self, i: usize, diagonal: f64) -> Result<Option<blend::Params>, Error> {
-        let b = &self.boolean[i];
-        match &b.radius {
-            Some(radius) => {
-                self.rolling([&b.profile, &b.overlap, &b.surface], [&b.alpha, &b.tolerance], radius, diagonal).map(Some)
-            }
-            None => Ok(None),
-        }
-    }
-
-    /// How a blend rolls.
-    pub(super) fn rolling_of_blend(&self, i: usize, diagonal: f64) -> Result<blend::Params, Error> {
-        let b = &self.blend[i];
-        self.rolling([&b.profile, &b.overlap, &b.surface], [&b.alpha, &b.tolerance], &b.radius, diagonal)
-    }
-
     /// How a polyhedron is rounded.
     pub(super) fn clustering(&self, i: usize, format: Format) -> Result<cluster::Params, Error> {
         let c = &self.cluster[i];
@@ -312,48 +295,6 @@ impl Recipe {
         params.tolerance = share(&c.tolerance, 1e-7, 0.1, params.tolerance)?;
         let spec = |e: &cluster::Entry| e.spec().map_err(|e| self.error(0..0, e.to_string()));
         params.clusters = c.clusters.as_ref().map(|all| all.iter().map(spec).collect()).transpose()?;
-        Ok(params)
-    }
-
-    fn rolling(
-        &self,
-        [cross_section, overlap, surface]: [&Option<Spanned<String>>; 3],
-        [alpha, tolerance]: [&Option<Spanned<f64>>; 2],
-        radius: &Spanned<Length>,
-        diagonal: f64,
-    ) -> Result<blend::Params, Error> {
-        let length = radius.get_ref().resolve(diagonal);
-        let length = length.ok_or_else(|| {
-            self.error(radius.span(), "a radius is a number above 0, or a share of the diagonal such as \"2%\"")
-        })?;
-        let mut params = blend::Params::new(length);
-        if let Some(text) = cross_section {
-            params.profile = profile(text.get_ref()).ok_or_else(|| {
-                self.error(text.span(), "a profile is arc, g2, chamfer, sharp, or conic=W with W of 0 or more")
-            })?;
-        }
-        if let Some(text) = overlap {
-            params.overlap = match text.get_ref().as_str() {
-                "shrink" => blend::Overlap::Shrink,
-                "error" => blend::Overlap::Error,
-                _ => return Err(self.error(text.span(), "overlap is shrink or error")),
-            };
-        }
-        if let Some(text) = surface {
-            params.surface = match text.get_ref().as_str() {
-                "auto" => blend::Surface::Auto,
-                "stitch" => blend::Surface::Stitch,
-                "field" => blend::Surface::Field,
-                "keep" => blend::Surface::Keep(blend::keep::Params::default()),
-                _ => return Err(self.error(text.span(), "a surface is auto, stitch, field or keep")),
-            };
-        }
-        if let Some(alpha) = alpha {
-            params.alpha = self.within(alpha, 1.0, 16.0)?;
-        }
-        if let Some(tolerance) = tolerance {
-            params.tolerance = self.within(tolerance, 1e-6, 0.5)?;
-        }
         Ok(params)
     }
 

@@ -2,11 +2,11 @@
 
 use super::run::{Replay, step};
 use super::tables::{Detail, DetailRegion};
-use super::{Error as Wrong, Recipe};
+use super::{Error as Wrong, Length, Recipe};
 use crate::compose::TRANSITION;
 use crate::detail::{Params, detail};
 use crate::{Error, Region, carry};
-use detail_transfer::Ribbon;
+use detail_transfer::{FanLength, Ribbon, Search};
 use glam::DVec3;
 use mesh_core::{FaceOrigin, Faces};
 use mesh_io::Model;
@@ -53,7 +53,26 @@ impl Recipe {
         let ribbon = structured.then(|| Ribbon::along(table.along.iter().map(|&p| DVec3::from(p)).collect()));
         let ribbon = match ribbon {
             None => None,
-            Some(r) => Some(Ribbon { width: length(&table.width)?, spacing: length(&table.spacing)?, ..r }),
+            Some(r) => Some(Ribbon {
+                source_curve: match &table.source_along[..] {
+                    [] => None,
+                    points => Some(points.iter().map(|&p| DVec3::from(p)).collect()),
+                },
+                width: length(&table.width)?,
+                spacing: length(&table.spacing)?,
+                ..r
+            }),
+        };
+        let fan = match table.fan.as_ref().map(toml::Spanned::get_ref) {
+            None => FanLength::default(),
+            Some(Length::Share(name)) if name == "diagonal" => FanLength::Diagonal,
+            Some(Length::Share(name)) if name == "edges" => FanLength::Edges,
+            Some(_) => length(&table.fan)?.map_or(FanLength::default(), FanLength::Units),
+        };
+        let search = match table.search.as_ref().map(|s| (s.get_ref().as_str(), s.span())) {
+            None | Some(("indexed", _)) => Search::Indexed,
+            Some(("exhaustive", _)) => Search::Exhaustive,
+            Some((_, span)) => return Err(self.error(span, "a search is indexed or exhaustive")),
         };
         let intensity = match &table.intensity {
             Some(factor) => Some(self.within(factor, -100.0, 100.0)?),
@@ -61,6 +80,8 @@ impl Recipe {
         };
         let params = detail_transfer::Params {
             wavelength: length(&table.wavelength)?,
+            fan,
+            search,
             intensity,
             ribbon,
             ..detail_transfer::Params::default()

@@ -27,6 +27,7 @@
 //! | `tables.rs` | what may stand in a recipe |
 //! | `values.rs` | vectors, lengths, poses, profiles |
 //! | `check.rs` | what TOML cannot check: names, ranges |
+//! | `rolling.rs` | how a ball is rolled |
 //! | `run.rs` | the steps, in order |
 //! | `pose.rs`, `placement.rs`, `snap.rs` | where parts stand: their own poses, primitives, openings that face each other |
 //! | `details.rs` | the steps of geometry detail |
@@ -39,6 +40,7 @@ mod error;
 mod placement;
 mod pose;
 mod rims;
+mod rolling;
 mod run;
 mod snap;
 mod tables;
@@ -46,7 +48,7 @@ mod values;
 
 pub use error::Error;
 pub use tables::{
-    Blend, Boolean, Cluster, Compose, Creases, Depth, Detail, DetailRegion, DetailRegions, On, Part, PartCut, Plane,
-    Primitive, Radius, Recipe, Silhouette, Snap, Step,
+    BallRadius, Blend, Boolean, Cluster, Compose, Creases, Depth, Detail, DetailRegion, DetailRegions, On, Part,
+    PartCut, Plane, Primitive, Radius, RadiusAt, Recipe, Silhouette, Snap, Step,
 };
 pub use values::{Length, Rotation};

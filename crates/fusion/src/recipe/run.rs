@@ -212,7 +212,7 @@ impl Replay<'_> {
             };
             let params = round::Params {
                 features: features::Params { angle, ..features::Params::default() },
-                picked: vec![],
+                picked: blend.picked.clone(),
                 near: blend.near.iter().map(|&p| DVec3::from(p)).collect(),
                 blend: self.recipe.rolling_of_blend(i, self.diagonal())?,
                 format: self.format,

@@ -1,6 +1,7 @@
 //! What may stand in a recipe. Documented for its writers in docs/recipes.md.
 
 use super::values::{DVec3Array, Length, Rotation};
+use crate::Picked;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -197,8 +198,11 @@ pub struct Boolean {
     pub parts: Option<Vec<Spanned<String>>>,
     /// What the result is called. The first part's name where left out.
     pub name: Option<Spanned<String>>,
-    /// Blends the seam with a ball of this radius.
-    pub radius: Option<Spanned<Length>>,
+    /// Blends the seam with a ball of this radius; of two, the first is kept from the first part.
+    pub radius: Option<Spanned<BallRadius>>,
+    /// As for a blend.
+    #[serde(default)]
+    pub radius_at: Vec<Spanned<RadiusAt>>,
     /// As for a blend.
     pub profile: Option<Spanned<String>>,
     /// As for a blend.
@@ -209,6 +213,10 @@ pub struct Boolean {
     pub alpha: Option<Spanned<f64>>,
     /// As for a blend.
     pub tolerance: Option<Spanned<f64>>,
+    /// As for a blend.
+    pub reach: Option<Spanned<f64>>,
+    /// As for a blend.
+    pub spine: Option<Spanned<String>>,
 }
 
 /// A join of openings by one smooth surface.
@@ -285,14 +293,19 @@ pub enum Depth {
 pub struct Blend {
     /// Which part, by name. The only one there is where left out.
     pub part: Option<Spanned<String>>,
-    /// Radius of the ball.
-    pub radius: Spanned<Length>,
+    /// Radius of the ball, or two: from the left side of a curve and from the right one.
+    pub radius: Spanned<BallRadius>,
+    /// Radii at places, between which it changes smoothly.
+    #[serde(default)]
+    pub radius_at: Vec<Spanned<RadiusAt>>,
     /// Least angle of a feature curve, in degrees; 40 where left out.
     pub angle: Option<Spanned<f64>>,
     /// Only the feature curves nearest to these points.
     #[serde(default)]
     pub near: Vec<DVec3Array>,
-    /// `"arc"` (the default), `"g2"`, `"chamfer"`, `"sharp"` or `"conic=W"`.
+    /// Only the curves in this file, relative to the recipe, as `features -o` writes it; see [`Recipe::read_curves`].
+    pub curves: Option<Spanned<PathBuf>>,
+    /// `"arc"` (the default), `"g2"`, `"chamfer"`, `"sharp"`, `"hermite"` or `"conic=W"`.
     pub profile: Option<Spanned<String>>,
     /// `"shrink"` (the default) or `"error"`.
     pub overlap: Option<Spanned<String>>,
@@ -302,6 +315,33 @@ pub struct Blend {
     pub alpha: Option<Spanned<f64>>,
     /// Chord tolerance as a share of the radius, from 1e-6 to 0.5.
     pub tolerance: Option<Spanned<f64>>,
+    /// Distance of the section's apex from the ball's centre, in radii, from 0.1 to 100.
+    pub reach: Option<Spanned<f64>>,
+    /// `"contact"` (the default) or `"offset"`.
+    pub spine: Option<Spanned<String>>,
+    /// What stands in the file of curves.
+    #[serde(skip)]
+    pub(super) picked: Vec<Picked>,
+}
+
+/// A ball's radius: one, or one for each side.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+pub enum BallRadius {
+    /// On both sides.
+    One(Length),
+    /// From the left side and from the right one.
+    Two([Length; 2]),
+}
+
+/// A radius at the place of a curve nearest to a point.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RadiusAt {
+    /// The point.
+    pub at: DVec3Array,
+    /// The radius there.
+    pub radius: Length,
 }
 
 /// A polyhedron rounded by clusters.
@@ -347,6 +387,9 @@ pub struct Detail {
     /// A curve from detail into the target, along which detail is continued patch by patch first.
     #[serde(default)]
     pub along: Vec<DVec3Array>,
+    /// The curve on the source, where that is another part; that of `along` where left out.
+    #[serde(default)]
+    pub source_along: Vec<DVec3Array>,
     /// Width of the band along the curve.
     pub width: Option<Spanned<Length>>,
     /// Distance of patches along the curve.
@@ -355,6 +398,10 @@ pub struct Detail {
     pub intensity: Option<Spanned<f64>>,
     /// What is shorter counts as detail.
     pub wavelength: Option<Spanned<Length>>,
+    /// How far around a vertex similarity is judged: `"diagonal"` (the default), `"edges"`, or a length.
+    pub fan: Option<Spanned<Length>>,
+    /// `"indexed"` (the default) or `"exhaustive"`.
+    pub search: Option<Spanned<String>>,
 }
 
 /// One region or several.

@@ -106,6 +106,7 @@ pub(super) fn profile(text: &str) -> Option<Profile> {
         "g2" => Some(Profile::G2),
         "chamfer" => Some(Profile::Chamfer),
         "sharp" => Some(Profile::Sharp),
+        "hermite" => Some(Profile::Hermite),
         _ => {
             let weight: f64 = text.strip_prefix("conic=")?.parse().ok()?;
             (weight.is_finite() && weight >= 0.0).then_some(Profile::Conic(weight))

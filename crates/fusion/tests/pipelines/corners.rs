@@ -122,7 +122,7 @@ fn half_a_rim_runs_out_at_both_ends() {
     let rim = curves(&mesh).remove(0);
     let half = BlendCurve { halfedges: rim.halfedges[..32].to_vec(), closed: false };
     let done = rounded(&mesh, std::slice::from_ref(&half), &Params::new(0.1));
-    assert_eq!((done.strips, done.corners), (1, 0));
+    assert_eq!((done.strips, done.corners, done.run_outs.len()), (1, 0, 2));
     // What is farther than three radii from the curve keeps its bits.
     let near = |p: DVec3| half.points(&mesh).iter().any(|q| q.distance(p) < 0.3);
     let kept: std::collections::HashSet<_> = done

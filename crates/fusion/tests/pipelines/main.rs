@@ -8,4 +8,5 @@ mod keep;
 mod placement;
 mod radii;
 mod scissors;
+mod sharpen;
 mod silhouettes;

@@ -229,6 +229,7 @@ fn attempt(
         residual: 0.0,
         shrunk: vec![],
         fallbacks: vec![],
+        run_outs: vec![],
         full_share: 1.0,
     })
 }

@@ -104,6 +104,7 @@ pub fn blend(
         residual,
         shrunk: Vec::new(),
         fallbacks: Vec::new(),
+        run_outs: Vec::new(),
         full_share: 1.0,
     })
 }
