@@ -1,0 +1,4 @@
+#![no_main]
+//! The reader of glTF.
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fusion_fuzz::read(bytes, mesh_io::Format::Gltf));
