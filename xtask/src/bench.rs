@@ -1,6 +1,7 @@
 //! Runs the benchmarks and puts their times into docs/benchmarks.md.
 
 use crate::{Fault, root, walk};
+use clap::Args;
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
@@ -8,22 +9,53 @@ use std::process::Command;
 
 /// The table stands between these lines of the page; the rest is written by hand.
 const MARKS: [&str; 2] = ["<!-- table: written by cargo xtask bench -->", "<!-- end of table -->"];
+const PEERS: [&str; 2] = ["<!-- peers: written by cargo xtask bench --peers -->", "<!-- end of peers -->"];
 
-/// Runs `cargo bench` and renews the table.
-pub fn run() -> Result<(), Fault> {
+/// What to run.
+#[derive(Args)]
+pub struct Options {
+    /// Run the same jobs through this program and through the Python packages that are there, instead of the benchmarks
+    #[arg(long)]
+    peers: bool,
+}
+
+/// Runs `cargo bench`, or the peers, and renews the table.
+pub fn run(options: &Options) -> Result<(), Fault> {
+    if options.peers { peers() } else { benchmarks() }
+}
+
+fn peers() -> Result<(), Fault> {
+    let built =
+        Command::new(env!("CARGO")).args(["build", "--release", "-p", "fusion-cli"]).current_dir(root()).status()?;
+    if !built.success() {
+        return Err("fusion-cli does not build".into());
+    }
+    let program = root().join("target/release/fusion-cli").with_extension(std::env::consts::EXE_EXTENSION);
+    let output = Command::new("python3").arg(root().join("xtask/peers.py")).arg(program).output()?;
+    if !output.status.success() {
+        return Err(format!("peers.py failed: {}", String::from_utf8_lossy(&output.stderr)).into());
+    }
+    renew(PEERS, &String::from_utf8_lossy(&output.stdout))
+}
+
+fn benchmarks() -> Result<(), Fault> {
     if !Command::new(env!("CARGO")).args(["bench", "--workspace", "--benches"]).current_dir(root()).status()?.success()
     {
         return Err("a benchmark failed".into());
     }
+    renew(MARKS, &table()?)
+}
+
+/// Puts a table between its marks on the page.
+fn renew(marks: [&str; 2], table: &str) -> Result<(), Fault> {
     let page = root().join("docs/benchmarks.md");
     let text = fs::read_to_string(&page)?;
     let marked = || {
-        let (before, rest) = text.split_once(MARKS[0])?;
-        Some((before, rest.split_once(MARKS[1])?.1))
+        let (before, rest) = text.split_once(marks[0])?;
+        Some((before, rest.split_once(marks[1])?.1))
     };
     let (before, after) = marked().ok_or("docs/benchmarks.md has lost the marks around its table")?;
-    fs::write(&page, format!("{before}{}\n{}{}{after}", MARKS[0], table()?, MARKS[1]))?;
-    Ok(())
+    Ok(fs::write(&page, format!("{before}{}\n{table}{}{after}", marks[0], marks[1]))?)
 }
 
 /// One row per benchmark, in order of name.

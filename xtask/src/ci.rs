@@ -15,6 +15,8 @@ pub fn run() -> Result<(), Fault> {
         cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])?;
     }
     cargo(&["test", "--workspace"])?;
+    // Packs every crate as it would be published, without building it again.
+    cargo(&["package", "--workspace", "--exclude", "xtask", "--no-verify", "--allow-dirty", "--quiet"])?;
     regress::run(&regress::Options::default())?;
     println!("ci: all passed in {:.0} s", start.elapsed().as_secs_f64());
     Ok(())

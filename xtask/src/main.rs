@@ -34,8 +34,8 @@ struct Cli {
 enum Chore {
     /// Everything a change must pass: format, lints, tests, tidy, regress
     Ci,
-    /// Runs the benchmarks and renews docs/benchmarks.md
-    Bench,
+    /// Runs the benchmarks, or the same jobs through peers, and renews docs/benchmarks.md
+    Bench(bench::Options),
     /// Writes the parts of all regression cases as files
     Fixtures(fixtures::Options),
     /// Runs the cases of fixtures/ against their approved records; with --models also real models
@@ -47,7 +47,7 @@ enum Chore {
 fn main() -> ExitCode {
     let result = match Cli::parse().chore {
         Chore::Ci => ci::run(),
-        Chore::Bench => bench::run(),
+        Chore::Bench(options) => bench::run(&options),
         Chore::Fixtures(options) => fixtures::run(&options),
         Chore::Regress(options) => regress::run(&options),
         Chore::Tidy => tidy::run(),

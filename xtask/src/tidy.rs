@@ -178,7 +178,9 @@ fn machine_paths(name: &str, text: &str, faults: &mut Vec<String>) {
 /// Every key such as `[Liu2005]` must be an entry of the bibliography.
 fn citations(name: &str, text: &str, bibliography: &str, faults: &mut Vec<String>) {
     for (i, line) in text.lines().enumerate() {
-        for key in line.split('[').skip(1).filter_map(|rest| rest.split_once(']')).map(|(key, _)| key) {
+        for key in
+            line.split('[').skip(1).filter_map(|rest| rest.split_once(']')).map(|(key, _)| key.trim_end_matches('\\'))
+        {
             let letters = key.trim_end_matches(|c: char| c.is_ascii_digit());
             let is_key = key.len() == letters.len() + 4
                 && letters.starts_with(|c: char| c.is_ascii_uppercase())

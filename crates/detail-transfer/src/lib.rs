@@ -1,4 +1,4 @@
-//! Geometry detail taken from one surface and continued on another ([Lin2008] §4.2).
+//! Geometry detail taken from one surface and continued on another (\[Lin2008\] §4.2).
 //!
 //! A surface is taken apart into a smooth *base* and the *detail* on it: at every vertex, by how much its Laplacian differs from the base's and how
 //! far it stands off, in a local frame. Detail moves from vertex to vertex as plain numbers; a sparse least-squares system, prepared once, makes a

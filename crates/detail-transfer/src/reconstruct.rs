@@ -9,7 +9,7 @@ use glam::DVec3;
 /// Equations for the places of some vertices, prepared for many details.
 ///
 /// They minimise Σ a·|Δd − bend|² + Σ a·|d − offset|²/ℓ⁴ over the offsets d of the free vertices, a the vertices' areas, Δ the base's
-/// Laplacian, ℓ the wavelength over 2π: short waves follow the bend, as in [Lin2008] §4.2, long ones the offset, which alone
+/// Laplacian, ℓ the wavelength over 2π: short waves follow the bend, as in \[Lin2008\] §4.2, long ones the offset, which alone
 /// keeps small errors of the bend from adding up to dents. All other vertices keep their offsets exactly, and the bends of those next to free ones are
 /// asked for as well, so that the surface passes the weld smoothly.
 pub struct Reconstruction<'a> {

@@ -38,7 +38,7 @@ const MARGIN: f64 = 1.25;
 /// The detail at one vertex, in the frame of the base surface there: along its tangent, across, and along its normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Detail {
-    /// Difference of the Laplacian coordinates of surface and base, both by the base's operator ([Lin2008] §4.2's ξ), in 1/model unit: of
+    /// Difference of the Laplacian coordinates of surface and base, both by the base's operator (\[Lin2008\] §4.2's ξ), in 1/model unit: of
     /// a bump of height h and wavelength λ, h·(2π/λ)².
     pub bend: DVec3,
     /// Offset of the surface from its base, in model units.
@@ -107,7 +107,7 @@ pub struct Relief {
 impl Relief {
     /// Takes the region `inside` of a mesh, and as much around it as its base depends on, apart.
     ///
-    /// The base is that of implicit curvature flow ([Desbrun1999]): two implicit steps, and the same two again for what they
+    /// The base is that of implicit curvature flow (\[Desbrun1999\]): two implicit steps, and the same two again for what they
     /// took away, so that shapes longer than the wavelength hardly shrink. Boundaries of the mesh are held. One sparse factor serves all four steps;
     /// O(n^1.5) in the patch's vertices.
     ///

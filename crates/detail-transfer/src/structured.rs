@@ -1,4 +1,4 @@
-//! Structured propagation: patch by patch along a governing curve ([Lin2008] §4.2).
+//! Structured propagation: patch by patch along a governing curve (\[Lin2008\] §4.2).
 
 use crate::error::Error;
 use crate::rectangle::{Anchor, Rectangle, anchors, length};
@@ -27,7 +27,7 @@ impl Ribbon {
     }
 }
 
-/// Outer rectangles are this much larger than inner ones ([Lin2008] §4.2): a buffer that takes the distortion of the map, and in which
+/// Outer rectangles are this much larger than inner ones (\[Lin2008\] §4.2): a buffer that takes the distortion of the map, and in which
 /// source patches are shifted.
 const OUTER: f64 = 1.5;
 /// Places along the curve that a source patch is tried at, each way.

@@ -20,11 +20,11 @@ pub struct Exemplar<'a> {
 /// How long fans are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum FanLength {
-    /// A hundredth of the diagonal of the target mesh's box, as in all examples of [Lin2008] (§5.1), but no less than [`FanLength::Edges`]:
+    /// A hundredth of the diagonal of the target mesh's box, as in all examples of \[Lin2008\] (§5.1), but no less than [`FanLength::Edges`]:
     /// shorter fans hardly leave the faces of the vertex itself, of which nothing is known.
     #[default]
     Diagonal,
-    /// One and a half longest edges of the target's base ([Lin2008] §4.2), the longest hundredth left aside.
+    /// One and a half longest edges of the target's base (\[Lin2008\] §4.2), the longest hundredth left aside.
     Edges,
     /// In model units.
     Units(f64),
@@ -192,7 +192,7 @@ fn known_details(relief: &Relief, free: &[bool]) -> Vec<Option<Detail>> {
 
 /// Mean edges in the default wavelength.
 const EDGES: f64 = 12.0;
-/// The default length of fans, as a share of the diagonal ([Lin2008] §5.1).
+/// The default length of fans, as a share of the diagonal (\[Lin2008\] §5.1).
 const FAN_SHARE: f64 = 0.01;
 
 fn finite_diagonal(mesh: &Connected<TriMesh>) -> f64 {

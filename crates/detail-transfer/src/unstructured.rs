@@ -1,4 +1,4 @@
-//! Unstructured propagation: vertex by vertex, each taking the detail of the source vertex whose fan looks most alike ([Lin2008] §4.2).
+//! Unstructured propagation: vertex by vertex, each taking the detail of the source vertex whose fan looks most alike (\[Lin2008\] §4.2).
 
 use crate::error::Error;
 use crate::fan::{BRANCHES, Fan, NUMBERS, SAMPLES, fans};

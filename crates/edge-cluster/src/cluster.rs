@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::polyhedron::Polyhedron;
 use glam::DVec3;
 
-/// An edge cluster of a polyhedron ([EdgeCluster2019] §4.1).
+/// An edge cluster of a polyhedron (\[EdgeCluster2019\] §4.1).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cluster {
     /// Its n vertices, ascending.

@@ -5,7 +5,7 @@ use std::fmt;
 
 /// The kind and degree of a patch.
 ///
-/// Control points are numbered in the order of [`Shape::index`]: for a tensor-product patch b_{i,j} is number
+/// Control points are numbered in the order of `Shape::index`: for a tensor-product patch b_{i,j} is number
 /// i·(n2 + 1) + j; for an S-patch indices fall lexicographically from (n, 0, …, 0) to (0, …, 0, n).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
@@ -154,7 +154,7 @@ impl Shape {
     }
 
     /// Whether the control point with this index is in F_k for side k, counting from 0: whether it decides on contact of
-    /// order `g` there ([EdgeCluster2019] §2, eq. 7).
+    /// order `g` there (\[EdgeCluster2019\] §2, eq. 7).
     ///
     /// F_k of an S-patch is every index reached from one on side k by g free steps, hence i_k + i_{k+1} ≥ n − g.
     pub fn is_in_side(self, index: &[u8], k: usize, g: usize) -> bool {
@@ -176,7 +176,7 @@ impl Shape {
     }
 
     /// Pairs of neighbouring control points, each once, by number: one step along u or v, or one unit moved between
-    /// neighbouring entries, as the panels of an S-patch have it ([LoopDeRose1989]).
+    /// neighbouring entries, as the panels of an S-patch have it (\[LoopDeRose1989\]).
     pub fn neighbours(self) -> Vec<[u32; 2]> {
         let mut pairs = vec![];
         for (number, index) in self.indices().into_iter().enumerate() {
@@ -284,7 +284,7 @@ mod tests {
         }
     }
 
-    /// Examples 1, 3 and 4 of [EdgeCluster2019] list what each side has for itself.
+    /// Examples 1, 3 and 4 of \[EdgeCluster2019\] list what each side has for itself.
     #[test]
     fn the_papers_lists_come_out() {
         let own = |shape: Shape, k: usize| -> Vec<Vec<u8>> {

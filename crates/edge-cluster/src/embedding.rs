@@ -1,5 +1,5 @@
-//! The embedding of a regular polygon into a simplex: l_1, …, l_m with derivatives ([LoopDeRose1989], eq. 6 of
-//! [EdgeCluster2019]).
+//! The embedding of a regular polygon into a simplex: l_1, …, l_m with derivatives (\[LoopDeRose1989\], eq. 6 of
+//! \[EdgeCluster2019\]).
 
 use glam::DVec2;
 use std::f64::consts::TAU;

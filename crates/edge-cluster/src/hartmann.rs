@@ -1,4 +1,4 @@
-//! Hartmann's blend of two patches along an open edge ([Hartmann2001], eqs. 12 and 13 of [EdgeCluster2019]).
+//! Hartmann's blend of two patches along an open edge (\[Hartmann2001\], eqs. 12 and 13 of \[EdgeCluster2019\]).
 
 use crate::patch::Patch;
 use glam::{DVec2, DVec3};

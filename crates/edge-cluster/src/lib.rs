@@ -1,4 +1,4 @@
-//! Edge clusters of polyhedra blended by tensor-product and S-patches ([EdgeCluster2019]).
+//! Edge clusters of polyhedra blended by tensor-product and S-patches (\[EdgeCluster2019\]).
 //!
 //! An edge cluster {n+m} is a tree of n vertices with m open edges around it. One m-sided patch rounds all of it, and
 //! keeps contact of order g with the m faces around: the control points that decide on contact with a face are put into

@@ -1,4 +1,4 @@
-//! Polyhedra for tests and fixtures: the regular and semiregular solids, and the models of [EdgeCluster2019] by their
+//! Polyhedra for tests and fixtures: the regular and semiregular solids, and the models of \[EdgeCluster2019\] by their
 //! combinatorics.
 
 use glam::DVec3;

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use profile_nurbs::SurfaceJet;
 use rayon::prelude::*;
 
-/// An m-sided S-patch of degree n ([LoopDeRose1989]).
+/// An m-sided S-patch of degree n (\[LoopDeRose1989\]).
 ///
 /// A step of de Casteljau's algorithm takes the points of weight d + 1 to those of weight d: b_i = Σ_k l_k b_{i+e_k}.
 /// Which point each i + e_k is depends on the shape alone, and is looked up.

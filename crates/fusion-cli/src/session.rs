@@ -5,15 +5,19 @@ use crate::failure::Failure;
 use crate::output::{self, Outputs};
 use crate::progress::Progress;
 use fusion::mesh_core::{Bounds, Origins, Watch, bounds};
-use fusion::{Counts, Report};
+use fusion::{Counts, Report, Stage};
 use mesh_io::{Format, Model};
+use std::cell::Cell;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// What every verb works with.
 pub struct Session {
     common: Common,
     progress: Progress,
+    /// Time spent on reading so far.
+    reading: Cell<Duration>,
 }
 
 impl Session {
@@ -26,7 +30,7 @@ impl Session {
             output::check_writable(report)?;
         }
         let progress = Progress::start(!common.no_progress && !common.quiet);
-        Ok(Self { common, progress })
+        Ok(Self { common, progress, reading: Cell::default() })
     }
 
     /// What long loops report to.
@@ -63,6 +67,7 @@ impl Session {
         if paths.iter().filter(|p| is_stream(p)).count() > 1 {
             return Err(Failure::usage("only one input can be standard input"));
         }
+        let start = Instant::now();
         let mut models = vec![];
         for path in paths {
             self.watch().step("read", 0.0).map_err(|_| Failure::cancelled())?;
@@ -72,6 +77,7 @@ impl Session {
             }
             models.push(model);
         }
+        self.reading.set(self.reading.get() + start.elapsed());
         Ok(models)
     }
 
@@ -96,6 +102,7 @@ impl Session {
         report: &Report,
     ) -> Result<(), Failure> {
         self.watch().step("write", 0.0).map_err(|_| Failure::cancelled())?;
+        let report = &self.with_reading(report);
         let mut outputs = Outputs::default();
         for (path, bytes) in files {
             outputs.add(path, bytes);
@@ -118,12 +125,23 @@ impl Session {
     /// Writes files other than meshes, and the report, all or none.
     pub fn write_files(&self, files: Vec<(PathBuf, Vec<u8>)>, report: &Report) -> Result<(), Failure> {
         self.watch().step("write", 0.0).map_err(|_| Failure::cancelled())?;
+        let report = &self.with_reading(report);
         let mut outputs = Outputs::default();
         for (path, bytes) in files {
             outputs.add(path, bytes);
         }
         self.add_report(&mut outputs, report);
         outputs.commit_after(|| Ok(())).map(|()| self.tell_stages(report))
+    }
+
+    /// The report with the time of reading as its first stage.
+    fn with_reading(&self, report: &Report) -> Report {
+        let mut report = report.clone();
+        let milliseconds = self.reading.get().as_micros() as f64 / 1e3;
+        if milliseconds > 0.0 {
+            report.stages.insert(0, Stage { name: "read".into(), milliseconds });
+        }
+        report
     }
 
     fn add_report(&self, outputs: &mut Outputs, report: &Report) {

@@ -1,4 +1,4 @@
-//! The blend stage alone, connectivity kept, on the teapot's body and spout at the sizes that [Liu2005] §6.3 times.
+//! The blend stage alone, connectivity kept, on the teapot's body and spout at the sizes that \[Liu2005\] §6.3 times.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use fusion::blend::{Params, Surface, blend, keep};

@@ -1,4 +1,4 @@
-//! How the length of geodesic fans changes what looks alike ([Lin2008] Fig. 14): one picture for each of four lengths.
+//! How the length of geodesic fans changes what looks alike (\[Lin2008\] Fig. 14): one picture for each of four lengths.
 //!
 //! `cargo run --release -p fusion --example fan_lengths -- MESH X,Y,Z PREFIX`
 

@@ -1,4 +1,4 @@
-//! Geometry detail: a smooth region gets the detail of others ([Lin2008] §4.2).
+//! Geometry detail: a smooth region gets the detail of others (\[Lin2008\] §4.2).
 
 use crate::outcome::{Outcome, Promise};
 use crate::validity::as_written;

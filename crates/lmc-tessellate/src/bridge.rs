@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-/// How far a triangle is from equilateral: |2√3·r/l − 1| of its inradius r and longest side l ([Lin2008] eq. 3), in
+/// How far a triangle is from equilateral: |2√3·r/l − 1| of its inradius r and longest side l (\[Lin2008\] eq. 3), in
 /// [0, 1]; 1 without area.
 pub(crate) fn irregularity([a, b, c]: [DVec3; 3]) -> f64 {
     let (u, v, w) = (a.distance(b), b.distance(c), c.distance(a));

@@ -52,7 +52,7 @@ pub(crate) fn signs(values: &[f64; 8]) -> u8 {
 }
 
 /// Whether the negative corners of a face with diagonal signs hang together within it: the sign at the saddle of the
-/// bilinear interpolant ([Chernyaev1995]). Products commute exactly, so both cells of the face agree.
+/// bilinear interpolant (\[Chernyaev1995\]). Products commute exactly, so both cells of the face agree.
 fn negatives_joined(values: [f64; 4]) -> bool {
     let negative = usize::from(values[0] >= 0.0);
     values[negative] * values[negative + 2] > values[1 - negative] * values[3 - negative]

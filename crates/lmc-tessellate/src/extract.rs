@@ -70,7 +70,7 @@ struct Bracket {
     /// The parameters between which the sign changes, and the field there.
     ends: [f64; 2],
     values: [f64; 2],
-    /// The end moved last, whose opposite is weighed down ([DowellJarratt1971]).
+    /// The end moved last, whose opposite is weighed down (\[DowellJarratt1971\]).
     moved: usize,
     t: f64,
 }

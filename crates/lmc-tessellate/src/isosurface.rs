@@ -6,7 +6,7 @@ use glam::{DVec3, IVec3};
 use mesh_core::TriMesh;
 
 /// The zero set of the trilinear interpolant of samples on a grid, positive side outward: closed but for where it leaves
-/// the grid, manifold, and of the interpolant's topology in every cell ([Chernyaev1995]; zeros count as positive).
+/// the grid, manifold, and of the interpolant's topology in every cell (\[Chernyaev1995\]; zeros count as positive).
 ///
 /// `values` runs along x first; `counts` says how many samples there are along each axis, `cell` apart. Empty if the
 /// numbers do not fit each other. O(n).

@@ -3,7 +3,7 @@
 //! Parts of a model end in boundary loops, their *rims*. A scalar field, negative inside, vanishes there. [`tessellate`]
 //! follows its zero set outward from the rims through a sparse grid, triangulates it with the topology of the trilinear
 //! field in every cell, leaves out what lies behind the rims, and bridges the gap to the rims' own vertices
-//! ([Lin2008] §3).
+//! (\[Lin2008\] §3).
 //!
 //! ```
 //! use glam::DVec3;

@@ -43,7 +43,7 @@ pub struct Transition {
 }
 
 /// A cell size for given rims: 0.8 of their mean edge, but a fifth of the smallest distance between two of them, though
-/// not under 0.4 of the mean edge, below which the gap is bridged directly ([Lin2008] §3.1). O(n²) in rim vertices.
+/// not under 0.4 of the mean edge, below which the gap is bridged directly (\[Lin2008\] §3.1). O(n²) in rim vertices.
 pub fn suggested_cell(rims: &[Rim]) -> f64 {
     let lengths: Vec<f64> = rims.iter().flat_map(Rim::lengths).collect();
     let edge = lengths.iter().sum::<f64>() / lengths.len() as f64;

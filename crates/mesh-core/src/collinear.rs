@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-/// Whether three points lie exactly on one line, decided without rounding ([Shewchuk1997]).
+/// Whether three points lie exactly on one line, decided without rounding (\[Shewchuk1997\]).
 ///
 /// Exact while products of coordinates, relative to the largest, stay above 1e-290; not finite means not collinear.
 pub fn collinear([a, b, c]: [DVec3; 3]) -> bool {

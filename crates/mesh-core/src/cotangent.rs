@@ -26,13 +26,13 @@ fn triangle_cotangents(p: [DVec3; 3]) -> [f64; 3] {
 }
 
 /// The weight ½(cot α + cot β) of the edge of `h`, α and β the angles facing it; one term on the boundary
-/// ([PinkallPolthier1993]). Negative where the edge is not Delaunay.
+/// (\[PinkallPolthier1993\]). Negative where the edge is not Delaunay.
 pub fn cotangent_weight(mesh: &impl Adjacency, cotangents: &CornerMap<f64>, h: HalfedgeId) -> f64 {
     0.5 * (cotangents[h.prev()] + mesh.twin(h).map_or(0.0, |t| cotangents[t.prev()]))
 }
 
 /// The share of the surface that belongs to each vertex: Voronoi areas, cut at the middle of obtuse triangles so that
-/// they add up to the whole area ([MeyerDesbrunSchroderBarr2003]). Square model units. O(n), parallel.
+/// they add up to the whole area (\[MeyerDesbrunSchroderBarr2003\]). Square model units. O(n), parallel.
 pub fn mixed_areas<M: Adjacency + Positions + Sync>(mesh: &M) -> VertexMap<f64> {
     let area = |v| mesh.ring(VertexId(v)).map(|h| corner_area(turned(points(mesh, h.face()), h.corner()))).sum();
     (0..mesh.vertex_count() as u32).into_par_iter().map(area).collect::<Vec<f64>>().into()
@@ -54,7 +54,7 @@ fn corner_area(p: [DVec3; 3]) -> f64 {
 }
 
 /// H·n at each vertex, H = (κ₁ + κ₂)/2 in 1/model unit: on a ball of radius R it is the outward normal over R
-/// ([MeyerDesbrunSchroderBarr2003]). Zero on the boundary, at vertices without area, and where there is no face. O(n), parallel.
+/// (\[MeyerDesbrunSchroderBarr2003\]). Zero on the boundary, at vertices without area, and where there is no face. O(n), parallel.
 pub fn mean_curvature_vectors<M: Adjacency + Positions + Sync>(mesh: &M) -> VertexMap<DVec3> {
     let curvature = |v| {
         let v = VertexId(v);

@@ -1,7 +1,7 @@
 //! Geodesic distance, flooded from seeds over the surface without crossing barriers.
 //!
-//! A front of triangles unfolded into the plane ([KimmelSethian1998]), with the seed's unfolded place kept instead of
-//! a plane wave where both corners hear the same seed ([Novotni2002]): exact on flat meshes from point seeds, within 0.5% of a
+//! A front of triangles unfolded into the plane (\[KimmelSethian1998\]), with the seed's unfolded place kept instead of
+//! a plane wave where both corners hear the same seed (\[Novotni2002\]): exact on flat meshes from point seeds, within 0.5% of a
 //! great circle at one radius on a ball of 1 280 triangles, error falling with the edge length. A late
 //! better value re-opens a vertex, which is what obtuse triangles need in place of their special unfolding.
 

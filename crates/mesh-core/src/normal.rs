@@ -69,7 +69,7 @@ pub fn face_normals<M: Faces + Positions + Sync>(mesh: &M) -> FaceMap<DVec3> {
     (0..mesh.face_count() as u32).into_par_iter().map(|f| face_normal(mesh, FaceId(f))).collect::<Vec<_>>().into()
 }
 
-/// The unit normals of all vertices, face normals weighted by the angle they hold there ([Baerentzen2005]), which is
+/// The unit normals of all vertices, face normals weighted by the angle they hold there (\[Baerentzen2005\]), which is
 /// independent of how flat neighbourhoods are triangulated. Zero for vertices without a face. O(n), parallel.
 pub fn vertex_normals<M: Adjacency + Positions + Sync>(mesh: &M) -> VertexMap<DVec3> {
     let normal = |v| one_sided_normal(mesh, VertexId(v), mesh.ring(VertexId(v)).map(HalfedgeId::face));

@@ -112,7 +112,7 @@ fn pieces(mesh: &TriMesh) -> Vec<Piece> {
     pieces
 }
 
-/// The signed angle that a triangle fills seen from `at` ([VanOosterom1983]), in steradians.
+/// The signed angle that a triangle fills seen from `at` (\[VanOosterom1983\]), in steradians.
 fn solid_angle(corners: [DVec3; 3], at: DVec3) -> f64 {
     let [a, b, c] = corners.map(|p| p - at);
     let (la, lb, lc) = (a.length(), b.length(), c.length());

@@ -16,7 +16,7 @@ pub(crate) fn parse_f64(token: &[u8]) -> Option<f64> {
 }
 
 /// Reads a decimal number at the start of `text` where one exact multiplication or division gives it correctly
-/// rounded: at most 19 digits that fit 53 bits, and a power of ten up to 22 ([Clinger1990]). Returns the value and
+/// rounded: at most 19 digits that fit 53 bits, and a power of ten up to 22 (\[Clinger1990\]). Returns the value and
 /// the number of bytes read.
 #[inline]
 pub(crate) fn plain_decimal(text: &[u8]) -> Option<(f64, usize)> {

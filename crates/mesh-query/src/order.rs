@@ -1,6 +1,6 @@
 //! Leaves: neighbouring triangles along a space-filling curve, a few to a leaf.
 //!
-//! The builder (PLOC, [MeisterBittner2018]) then has a third of the nodes to join, which halves its time.
+//! The builder (PLOC, \[MeisterBittner2018\]) then has a third of the nodes to join, which halves its time.
 
 use crate::build::CHUNK;
 use obvhs::Boundable;

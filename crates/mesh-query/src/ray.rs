@@ -33,7 +33,7 @@ impl TriBvh {
     /// length. `None` also when the direction is zero, anything is NaN, or the origin is more than 1e15 times the mesh's
     /// size away.
     ///
-    /// A ray through an edge or vertex of a closed mesh never slips between its triangles [WoopBenthinWald2013];
+    /// A ray through an edge or vertex of a closed mesh never slips between its triangles \[WoopBenthinWald2013\];
     /// a triangle seen exactly edge-on is not hit.
     pub fn ray_cast<M: Faces + Positions>(
         &self,

@@ -10,7 +10,7 @@ const SLIVER: f64 = 1e-8;
 /// rounding, exactly 0 (and 1) on edges and at vertices.
 ///
 /// Needles, and triangles that are really a segment or a point, are fine; so are lengths from 1e-300 to 1e300. NaN in,
-/// NaN out. The regions of the plane are walked as in [Ericson2005] §5.1.5.
+/// NaN out. The regions of the plane are walked as in \[Ericson2005\] §5.1.5.
 pub fn closest_point_on_triangle(p: DVec3, triangle: [DVec3; 3]) -> (DVec3, [f64; 3]) {
     let relative = triangle.map(|v| v - p);
     let size = relative.iter().fold(0.0f64, |m, v| m.max(v.abs().max_element()));

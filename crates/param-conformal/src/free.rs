@@ -1,4 +1,4 @@
-//! Discs with a free boundary: the spectral conformal map ([MullenTongAlliezDesbrun2008]).
+//! Discs with a free boundary: the spectral conformal map (\[MullenTongAlliezDesbrun2008\]).
 //!
 //! The map z minimises its conformal energy ½ zᴴL z − area(z) among all of one size, measured on the boundary; no
 //! vertex is pinned, so that nothing but the surface decides the result. With z complex the energy is one Hermitian

@@ -12,11 +12,11 @@ use mesh_core::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weights {
     /// ½(cot α + cot β): keeps angles, but may turn triangles over where edges are far from Delaunay
-    /// ([PinkallPolthier1993]).
+    /// (\[PinkallPolthier1993\]).
     #[default]
     Cotangent,
     /// 1: no triangle is turned over when the boundary is mapped to a convex outline with no triangle flat along it
-    /// ([Tutte1963]).
+    /// (\[Tutte1963\]).
     Uniform,
 }
 

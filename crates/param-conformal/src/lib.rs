@@ -1,9 +1,9 @@
 //! Conformal maps of rings and discs of triangles into the plane.
 //!
-//! With a fixed boundary the map is *harmonic* with cotangent weights ([PinkallPolthier1993]): the discrete conformal
+//! With a fixed boundary the map is *harmonic* with cotangent weights (\[PinkallPolthier1993\]): the discrete conformal
 //! map where the boundary is that of one. A ring, which has two boundary loops, is cut along a path from one to the other
 //! ([`Ring`]) and laid onto a rectangle, its ends meeting as on a cylinder or pinned to the rectangle's sides
-//! ([`Seam`]). With a free boundary the map is the *spectral conformal* one ([MullenTongAlliezDesbrun2008]).
+//! ([`Seam`]). With a free boundary the map is the *spectral conformal* one (\[MullenTongAlliezDesbrun2008\]).
 //!
 //! ```
 //! use mesh_core::{Connected, Faces, shapes};

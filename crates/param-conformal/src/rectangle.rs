@@ -13,7 +13,7 @@ pub enum Seam {
     /// They meet as on a cylinder: the map does not depend on where the seam runs, and the seam need not become straight.
     #[default]
     Periodic,
-    /// The seam is laid onto both ends at the same heights, by its length, as in [Liu2005] §5.1. Costs distortion
+    /// The seam is laid onto both ends at the same heights, by its length, as in \[Liu2005\] §5.1. Costs distortion
     /// where the seam zigzags.
     Straight,
 }

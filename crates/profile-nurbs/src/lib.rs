@@ -2,7 +2,7 @@
 //!
 //! A ball that touches two surfaces at its *feet* gives a [`Section`]: the two feet and the apex where the tangents
 //! there meet. A [`Profile`] draws a curve into the section, and a [`Sweep`] rules a surface between neighbouring
-//! curves ([Liu2005] §4).
+//! curves (\[Liu2005\] §4).
 //!
 //! ```
 //! use glam::DVec3;

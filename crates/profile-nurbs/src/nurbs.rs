@@ -3,7 +3,7 @@
 use crate::error::Error;
 use glam::{DVec3, DVec4};
 
-/// A rational B-spline curve ([PieglTiller1997] ch. 4). Immutable, and always sound once made.
+/// A rational B-spline curve (\[PieglTiller1997\] ch. 4). Immutable, and always sound once made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nurbs {
     pub(crate) degree: usize,

@@ -13,12 +13,12 @@ pub enum Profile {
     /// The straight chord.
     Chamfer,
     /// A conic whose apex weighs W times that of the arc: below 1 flatter, above 1 sharper. W ≥ 0; 0 is the chamfer,
-    /// infinity the sharp edge ([Liu2005] §4.2).
+    /// infinity the sharp edge (\[Liu2005\] §4.2).
     Conic(f64),
     /// The two legs, meeting in the apex.
     Sharp,
     /// The cubic with the arc's end tangents and middle point: a polynomial stand-in for the arc, at most 0.03% of r
-    /// away at 90° ([Liu2005] offers it as "Hermite").
+    /// away at 90° (\[Liu2005\] offers it as "Hermite").
     Hermite,
     /// A quintic that leaves both legs with zero curvature, so that reflections run unbroken from a flat face into the
     /// blend. At 90° it is at most 3.7% of r away from the arc and 13% more curved at its tightest; its middle stands

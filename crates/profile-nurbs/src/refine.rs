@@ -3,7 +3,7 @@
 use crate::nurbs::Nurbs;
 
 impl Nurbs {
-    /// The same curve with `u` as a knot up to `times` more often, never more than `degree` times in all ([Boehm1980]).
+    /// The same curve with `u` as a knot up to `times` more often, never more than `degree` times in all (\[Boehm1980\]).
     /// Unchanged when `u` is not strictly inside the domain.
     #[must_use]
     pub fn with_knot(&self, u: f64, times: usize) -> Self {

@@ -21,7 +21,7 @@ const NEARLY_OPPOSITE: f64 = 1e-9;
 
 impl Section {
     /// The section of a ball with its centre and feet: `P0 = ((cos φ − 1) P + P1 + P2) / (cos φ + 1)`, φ the angle
-    /// between the feet ([Liu2005] §4.2), written so that it keeps its digits for every φ in (0, π).
+    /// between the feet (\[Liu2005\] §4.2), written so that it keeps its digits for every φ in (0, π).
     ///
     /// # Errors
     /// [`Error::NotFinite`]; [`Error::UnequalRadii`] when the feet lie on no common ball; [`Error::NoApex`] when they
@@ -84,7 +84,7 @@ impl Section {
     }
 
     /// The section with its apex moved along the line from the ball's `center` to the distance `reach`·r, r being the
-    /// distance of the first foot: the pulled-out profile of [Liu2005] Fig. 4c (`reach` 2.4). The curve then meets the
+    /// distance of the first foot: the pulled-out profile of \[Liu2005\] Fig. 4c (`reach` 2.4). The curve then meets the
     /// surfaces at an angle. Unchanged when the apex is at the centre or `reach` is not finite.
     #[must_use]
     pub fn with_reach(&self, center: DVec3, reach: f64) -> Self {

@@ -5,7 +5,7 @@ use crate::nurbs::Nurbs;
 use glam::DVec3;
 
 /// The surface S(t, u) = (1 − s)·T_i(u) + s·T_{i+1}(u), s = (t − t_i)/(t_{i+1} − t_i), through a row of curves T_i
-/// ([Liu2005] eq. 1). The curves' domains are all mapped to u in [0, 1].
+/// (\[Liu2005\] eq. 1). The curves' domains are all mapped to u in [0, 1].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
     parameters: Vec<f64>,

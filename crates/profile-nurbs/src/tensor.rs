@@ -3,7 +3,7 @@
 use crate::error::Error;
 use glam::DVec3;
 
-/// A polynomial tensor-product Bézier patch of degree (n1, n2) over [0, 1]² ([PieglTiller1997] ch. 1).
+/// A polynomial tensor-product Bézier patch of degree (n1, n2) over [0, 1]² (\[PieglTiller1997\] ch. 1).
 #[derive(Clone, Debug, PartialEq)]
 pub struct TensorBezier {
     degrees: [usize; 2],

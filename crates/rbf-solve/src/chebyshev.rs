@@ -1,7 +1,7 @@
 //! Chebyshev polynomials of three variables, of bounded degree in the Euclidean sense.
 //!
 //! A smooth function on a cube needs all products Tₐ(x) T_b(y) T_c(z) with a² + b² + c² up to some radius, about half of those of a tensor
-//! grid of the same accuracy ([Trefethen2017]).
+//! grid of the same accuracy (\[Trefethen2017\]).
 
 use glam::DVec3;
 

@@ -2,7 +2,7 @@
 //!
 //! A conditionally definite kernel is definite on weights orthogonal to affine functions. Such weights are free at all unknowns but
 //! four, which they determine; the matrix reduced to the free ones is assembled directly and factored without pivoting, in half
-//! the work of an indefinite factorization ([Beatson2000] §4).
+//! the work of an indefinite factorization (\[Beatson2000\] §4).
 
 use crate::admit::System;
 use crate::affine::Affine;

@@ -1,6 +1,6 @@
 //! Sums of kernels over many centres at many points, in time that grows with their number and not with its square.
 //!
-//! The black-box fast multipole method ([FongDarve2009]): what is far is felt through grids of Chebyshev nodes, on cells of an octree.
+//! The black-box fast multipole method (\[FongDarve2009\]): what is far is felt through grids of Chebyshev nodes, on cells of an octree.
 //! Kernels that are powers of the distance need one set of grid-to-grid matrices for all levels, and mirrored and turned pairs share
 //! theirs.
 

@@ -3,10 +3,10 @@
 /// Which radial function the field is a sum of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Kernel {
-    /// φ(r) = r, biharmonic in space ([Zhu2005] §2.2). Stiff and free of bumps, but without a gradient at its own centres, so
+    /// φ(r) = r, biharmonic in space (\[Zhu2005\] §2.2). Stiff and free of bumps, but without a gradient at its own centres, so
     /// it cannot take gradient constraints and meets other surfaces with a crease.
     Biharmonic,
-    /// φ(r) = r³, triharmonic ([TurkOBrien2002], [Lin2008] §2). Twice differentiable everywhere. With gradient constraints it is the
+    /// φ(r) = r³, triharmonic (\[TurkOBrien2002\], \[Lin2008\] §2). Twice differentiable everywhere. With gradient constraints it is the
     /// Hermite interpolant of least bending.
     #[default]
     Triharmonic,

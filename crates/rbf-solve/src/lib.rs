@@ -1,7 +1,7 @@
 //! Variational implicit functions: the smoothest field with given values, and gradients, at given points.
 //!
 //! A field f(x) = Σ wⱼ φ(|x − cⱼ|) + p(x) with an affine p interpolates constraints and bends as little as its kernel allows
-//! ([TurkOBrien2002]). Its zero set is a surface through scattered points: negative inside, positive outside, gradients pointing out.
+//! (\[TurkOBrien2002\]). Its zero set is a surface through scattered points: negative inside, positive outside, gradients pointing out.
 //!
 //! ```
 //! use glam::DVec3;

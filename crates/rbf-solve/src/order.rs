@@ -4,7 +4,7 @@ use crate::neighbours::Cells;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Points in an order in which each batch is about half as far apart as the one before ([Schafer2021] §4).
+/// Points in an order in which each batch is about half as far apart as the one before (\[Schafer2021\] §4).
 pub(crate) struct CoarseToFine {
     /// The points, coarse first.
     pub(crate) order: Vec<u32>,

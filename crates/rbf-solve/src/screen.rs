@@ -2,7 +2,7 @@
 //!
 //! Kernels that are Green's functions screen: given its neighbours, a value hardly depends on what is farther away. So each unknown,
 //! in coarse-to-fine order, is regressed on the nearest ones before it only, which gives a sparse factor of the inverse
-//! ([Schafer2021]).
+//! (\[Schafer2021\]).
 
 use crate::affine::Affine;
 use crate::kernel::Radial;

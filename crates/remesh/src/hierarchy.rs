@@ -12,7 +12,7 @@ const MOST_NEIGHBOURS: u32 = 12;
 /// prefer short edges where all is flat.
 const SHORT: f64 = 1e-3;
 
-/// A surface decimated level by level, which keeps what each level lost ([Guskov1999]).
+/// A surface decimated level by level, which keeps what each level lost (\[Guskov1999\]).
 ///
 /// A vertex that is removed remembers its place in a frame that its neighbours of then span. When the coarsest surface
 /// has been reshaped, [`Hierarchy::restore`] puts all vertices back, finest last, each in its frame as that has been
@@ -202,7 +202,7 @@ fn decimate(table: &mut Table, points: &[DVec3], held: &[bool]) -> Level {
 }
 
 /// The cheapest halfedge along which `v` can be merged into a neighbour: the least height of the neighbour over the planes
-/// of the faces at `v` ([GarlandHeckbert1997]).
+/// of the faces at `v` (\[GarlandHeckbert1997\]).
 fn cheapest(table: &Table, points: &[DVec3], v: u32) -> Option<(f64, u32)> {
     let p = points[v as usize];
     let normals: Vec<DVec3> =

@@ -52,7 +52,7 @@ pub(crate) fn openness(
 /// An order of the tile's pixels in which neighbours are far apart.
 const DITHER: [[usize; TILE]; TILE] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 
-/// Cosine-weighted directions about +z with their lengths: the R3 sequence [Roberts2018], an additive recurrence.
+/// Cosine-weighted directions about +z with their lengths: the R3 sequence \[Roberts2018\], an additive recurrence.
 fn directions(count: usize) -> Vec<DVec3> {
     const STEP: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
     (0..count)

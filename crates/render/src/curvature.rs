@@ -1,4 +1,4 @@
-//! Mean curvature by cotangent weights [MeyerDesbrunSchroderBarr2003].
+//! Mean curvature by cotangent weights \[MeyerDesbrunSchroderBarr2003\].
 
 use crate::normals::Fans;
 use glam::DVec3;

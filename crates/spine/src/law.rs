@@ -4,7 +4,7 @@ use glam::DVec3;
 
 /// A share of the radius for every place along a curve, C¹ in the curve's length.
 ///
-/// Between two keys the share is monotone ([FritschCarlson1980]). An open curve has the resting share at its ends, a
+/// Between two keys the share is monotone (\[FritschCarlson1980\]). An open curve has the resting share at its ends, a
 /// closed one with a single key half-way round from it; a key at an end takes its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Law {

@@ -1,7 +1,7 @@
 //! Rolling-ball spine and linkage curves on triangle meshes.
 //!
 //! A ball kept in contact with the two sides of a blend curve traces a *spine curve* with its centre and a *linkage
-//! curve* on each side with its feet ([Liu2005] §3).
+//! curve* on each side with its feet (\[Liu2005\] §3).
 //!
 //! ```
 //! use mesh_core::{Connected, VertexId, shapes};
@@ -80,7 +80,7 @@ pub enum Solver {
     /// Newton on closest points, step by step: exact on the mesh.
     #[default]
     Contact,
-    /// The crossing of the offset patches, as in [Liu2005] §3: off by the sagitta of the facets, with feet that do not
+    /// The crossing of the offset patches, as in \[Liu2005\] §3: off by the sagitta of the facets, with feet that do not
     /// stick, and for patches that do not fold when moved by the radius.
     Offset(OffsetParams),
 }

@@ -1,4 +1,4 @@
-//! The spine as the crossing of two offset patches: the solver of [Liu2005] §3.
+//! The spine as the crossing of two offset patches: the solver of \[Liu2005\] §3.
 //!
 //! Each base patch is moved along its normals by the radius. The moved patches keep their triangles, so every point in
 //! which they cross has an image on either base patch by its barycentric coordinates there: the feet. Those feet move

@@ -1,7 +1,7 @@
 //! Folds of the sweep removed by stepping back on both sides and bridging the gap.
 //!
 //! Where a ball turns about a third contact, or the spine bends more tightly than the ball, a profile can fall behind
-//! its predecessor. [Liu2005] §4.3 cuts the loop out, steps back to points where the sweep advances again and bridges
+//! its predecessor. \[Liu2005\] §4.3 cuts the loop out, steps back to points where the sweep advances again and bridges
 //! them; this is that method for whole profiles, so that spine and both linkages are mended at once.
 
 use crate::curve::Convexity;

@@ -61,7 +61,7 @@ impl Pair {
     }
 }
 
-/// A sum of doubles, none overlapping the next, smallest first: an exact number [Shewchuk1997].
+/// A sum of doubles, none overlapping the next, smallest first: an exact number \[Shewchuk1997\].
 #[derive(Clone, Debug)]
 pub(crate) struct Expansion(Vec<f64>);
 

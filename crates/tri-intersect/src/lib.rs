@@ -19,7 +19,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Whether and how two triangles cross is decided by signs of exact predicates [Shewchuk1997] on the input points, with
+//! Whether and how two triangles cross is decided by signs of exact predicates \[Shewchuk1997\] on the input points, with
 //! explicit cases for zeros. A point of intersection is *named* by what carries it (an edge of one mesh and a face of the
 //! other, or two edges, or a vertex and a face …), so neighbouring triangles agree on it without comparing coordinates.
 //! Its place is computed in 106 bits and rounded once; its order along an edge is compared exactly. Crossed triangles are

@@ -274,7 +274,7 @@ impl Triangulator {
         (self.turn(u, x, w) > 0 && self.turn(x, v, w) > 0).then_some([u, v, w, x])
     }
 
-    /// Makes the edge between two points exist and fixes it, by flipping what crosses it [Sloan1993].
+    /// Makes the edge between two points exist and fixes it, by flipping what crosses it \[Sloan1993\].
     fn constrain(&mut self, [p, q]: [u32; 2]) -> Result<(), Conflict> {
         if !self.fix(p, q) {
             self.collect_crossed(p, q)?;

@@ -2,6 +2,7 @@
 
 use super::golden::Golden;
 use super::reference::Reference;
+use super::threads::Threads;
 use crate::{Fault, root};
 use fusion::cluster::{Clustered, Degree, Params, PatchParams, Spec, cluster, solids};
 use glam::DVec2;
@@ -58,7 +59,7 @@ fn model(solid: &solids::Solid) -> Model {
 }
 
 /// Runs every model and returns how many faults there were.
-pub fn run(bless: bool, reference: &mut Option<Reference>) -> Result<usize, Fault> {
+pub fn run(bless: bool, reference: &mut Option<Reference>, threads: &mut Threads) -> Result<usize, Fault> {
     let mut faults = 0;
     let mut made = vec![];
     for (name, solid, continuity, degree) in cases() {
@@ -69,7 +70,10 @@ pub fn run(bless: bool, reference: &mut Option<Reference>) -> Result<usize, Faul
             tolerance: 1e-3,
             ..Params::new(Format::Ply)
         };
-        let rounded = cluster(&model(&solid), &params, &Watch::default())?;
+        let part = model(&solid);
+        let job = || cluster(&part, &params, &Watch::default());
+        let (rounded, differs) = threads.twice(name, job, |made| made.as_ref().ok().map(|m| &m.outcome.model.mesh));
+        let rounded = rounded?;
         let record = root().join("fixtures/golden").join(format!("{name}.toml"));
         let now = Golden::of(&rounded.outcome.model.mesh)?;
         let wrong = match Golden::read(&record)? {
@@ -80,6 +84,7 @@ pub fn run(bless: bool, reference: &mut Option<Reference>) -> Result<usize, Faul
             None => vec!["has no approved record; look at it, then run `cargo xtask regress --bless`".to_string()],
             Some(approved) => now.differences(&approved),
         };
+        let wrong: Vec<String> = differs.into_iter().chain(wrong).collect();
         for fault in &wrong {
             println!("regress: {name}: {fault}");
         }

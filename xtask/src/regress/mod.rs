@@ -12,6 +12,7 @@
 //! | `pairs.rs`, `pose.rs` | pairs of real models in random poses |
 //! | `nasty.rs` | broken files through the command line |
 //! | `reference.rs` | results checked by another library |
+//! | `threads.rs` | results of one thread and of two compared |
 
 mod case;
 pub mod cluster;
@@ -24,12 +25,14 @@ mod pairs;
 mod pose;
 mod recipes;
 mod reference;
+mod threads;
 
 use crate::{Fault, root};
 use golden::Golden;
 use mesh_core::TriMesh;
 use reference::Reference;
 use std::path::PathBuf;
+use threads::Threads;
 
 /// What to run.
 #[derive(clap::Args, Default)]
@@ -51,9 +54,11 @@ pub struct Options {
 /// Runs all that is asked for and fails if anything is wrong.
 pub fn run(options: &Options) -> Result<(), Fault> {
     let mut reference = if options.reference { Some(Reference::new()?) } else { None };
-    let mut faults = cluster::run(options.bless, &mut reference)?;
-    faults += recipes::run(options.bless, &mut reference)?;
-    faults += cases(options.bless, &mut reference)?;
+    let mut threads = Threads::new()?;
+    let mut faults = cluster::run(options.bless, &mut reference, &mut threads)?;
+    faults += recipes::run(options.bless, &mut reference, &mut threads)?;
+    faults += cases(options.bless, &mut reference, &mut threads)?;
+    threads.finish()?;
     if options.reference {
         faults += lewiner::run()?;
     }
@@ -71,15 +76,17 @@ pub fn posed_parts() -> Result<Vec<(String, Vec<TriMesh>)>, Fault> {
     Ok(cases.into_iter().map(|(name, case)| (name, case.part.iter().map(case::Part::build).collect())).collect())
 }
 
-fn cases(bless: bool, reference: &mut Option<Reference>) -> Result<usize, Fault> {
+fn cases(bless: bool, reference: &mut Option<Reference>, threads: &mut Threads) -> Result<usize, Fault> {
     let fixtures = root().join("fixtures");
     let mut faults = 0;
     let all = case::read_all(&fixtures.join("cases"))?;
     for (name, case) in &all {
         let record = fixtures.join("golden").join(format!("{name}.toml"));
         let parts: Vec<_> = case.part.iter().map(case::Part::build).collect();
-        let mut wrong = vec![];
-        match join::join(&parts, case.operation, case.radius) {
+        let job = || join::join(&parts, case.operation, case.radius);
+        let (joined, differs) = threads.twice(name, job, |made| made.as_ref().ok().map(|j| &j.mesh));
+        let mut wrong: Vec<String> = differs.into_iter().collect();
+        match joined {
             Err(failure) => wrong.push(failure.reason),
             Ok(joined) => {
                 wrong.extend(joined.faults(&parts, case.operation, case.radius));

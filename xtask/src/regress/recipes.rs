@@ -4,6 +4,7 @@
 //! measures to a tolerance.
 
 use super::reference::Reference;
+use super::threads::Threads;
 use crate::{Fault, root};
 use fusion::Recipe;
 use mesh_core::{Connected, Watch, area, topology, validate, volume};
@@ -43,7 +44,7 @@ impl Record {
 }
 
 /// Replays every recipe of fixtures/recipes and returns how many faults there were.
-pub fn run(bless: bool, reference: &mut Option<Reference>) -> Result<usize, Fault> {
+pub fn run(bless: bool, reference: &mut Option<Reference>, threads: &mut Threads) -> Result<usize, Fault> {
     let folder = root().join("fixtures/recipes");
     let mut paths: Vec<PathBuf> = fs::read_dir(&folder)?.flatten().map(|e| e.path()).collect();
     paths.retain(|p| p.extension().is_some_and(|e| e == "toml"));
@@ -51,7 +52,7 @@ pub fn run(bless: bool, reference: &mut Option<Reference>) -> Result<usize, Faul
     let mut faults = 0;
     for path in &paths {
         let name = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-        for fault in replay(path, &name, bless, reference)? {
+        for fault in replay(path, &name, bless, reference, threads)? {
             println!("regress: {name}: {fault}");
             faults += 1;
         }
@@ -60,16 +61,24 @@ pub fn run(bless: bool, reference: &mut Option<Reference>) -> Result<usize, Faul
     Ok(faults)
 }
 
-fn replay(path: &Path, name: &str, bless: bool, reference: &mut Option<Reference>) -> Result<Vec<String>, Fault> {
+fn replay(
+    path: &Path,
+    name: &str,
+    bless: bool,
+    reference: &mut Option<Reference>,
+    threads: &mut Threads,
+) -> Result<Vec<String>, Fault> {
     let recipe = Recipe::parse(&fs::read_to_string(path)?)?;
     let folder = path.parent().unwrap_or(path);
     let parts = recipe.parts.iter().map(|p| mesh_io::read(&folder.join(&p.mesh))).collect::<Result<Vec<_>, _>>()?;
     let start = Instant::now();
-    let made = match recipe.run(&parts, Format::Ply, &Watch::default()) {
+    let job = || recipe.run(&parts, Format::Ply, &Watch::default());
+    let (made, differs) = threads.twice(name, job, |made| made.as_ref().ok().map(|m| &m.model.mesh));
+    let made = match made {
         Ok(made) => made.model.mesh,
         Err(error) => return Ok(vec![error.to_string()]),
     };
-    println!("regress: {name}: {} triangles in {:.2} s", made.faces.len(), start.elapsed().as_secs_f64());
+    println!("regress: {name}: {} triangles twice in {:.2} s", made.faces.len(), start.elapsed().as_secs_f64());
     let counts = topology(&Connected::new(&made)?);
     let now = Record {
         components: counts.components,
@@ -78,7 +87,7 @@ fn replay(path: &Path, name: &str, bless: bool, reference: &mut Option<Reference
         area: area(&made),
         volume: volume(&made),
     };
-    let mut wrong = vec![];
+    let mut wrong: Vec<String> = differs.into_iter().collect();
     if !validate(&made).is_manifold() {
         wrong.push(format!("is not valid: {}", validate(&made)));
     }

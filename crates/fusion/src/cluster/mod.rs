@@ -1,4 +1,4 @@
-//! Polyhedra rounded cluster by cluster, by patches in contact with the faces around ([EdgeCluster2019]).
+//! Polyhedra rounded cluster by cluster, by patches in contact with the faces around (\[EdgeCluster2019\]).
 //!
 //! | file | holds |
 //! |---|---|

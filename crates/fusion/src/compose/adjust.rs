@@ -1,4 +1,4 @@
-//! Openings that are too near to others, trimmed back along their own parts ([Lin2008] §5.1 leaves this to the user).
+//! Openings that are too near to others, trimmed back along their own parts (\[Lin2008\] §5.1 leaves this to the user).
 
 use super::openings::openings;
 use super::{Error, Params};

@@ -123,7 +123,7 @@ pub(super) fn closed_curve(polyline: &[DVec3], spacing: f64) -> Vec<(DVec3, DVec
     (0..count).map(at).filter(|s| s.0.is_finite() && s.1.is_finite()).collect()
 }
 
-/// A denser polyline along the centripetal Catmull–Rom spline through the points ([Yuksel2011]).
+/// A denser polyline along the centripetal Catmull–Rom spline through the points (\[Yuksel2011\]).
 fn spline(points: &[DVec3], closed: bool) -> Vec<DVec3> {
     const STEPS: usize = 16;
     let mut points = points.to_vec();

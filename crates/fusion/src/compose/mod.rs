@@ -1,4 +1,4 @@
-//! Composition: any number of openings joined by one smooth surface, the parts untouched ([Lin2008], [Zhu2005]).
+//! Composition: any number of openings joined by one smooth surface, the parts untouched (\[Lin2008\], \[Zhu2005\]).
 //!
 //! | file | holds |
 //! |---|---|
@@ -117,7 +117,7 @@ pub enum Method {
     /// Rings of the parts' vertices, and points outside of them.
     #[default]
     Implicit,
-    /// Boundary vertices alone, and points on both sides of them ([Zhu2005]).
+    /// Boundary vertices alone, and points on both sides of them (\[Zhu2005\]).
     Montage,
 }
 

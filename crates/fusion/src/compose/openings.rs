@@ -154,7 +154,7 @@ fn first_crossing(a: &Connected<TriMesh>, b: &Connected<TriMesh>, shared: &Bound
     pairs.iter().find(crossing).map(|pair| p.triangle(pair[0])[0])
 }
 
-/// How often a part winds round a point: 1 inside a closed one, 0 outside ([VanOosterom1983]).
+/// How often a part winds round a point: 1 inside a closed one, 0 outside (\[VanOosterom1983\]).
 fn winding(mesh: &Connected<TriMesh>, p: DVec3) -> f64 {
     let solid_angle = |f: &[VertexId; 3]| {
         let [a, b, c] = f.map(|v| mesh.position(v) - p);

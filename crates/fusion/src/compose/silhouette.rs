@@ -1,4 +1,4 @@
-//! Silhouettes: curves that the surface passes through and along which it turns away from the viewer ([Lin2008] §2.2).
+//! Silhouettes: curves that the surface passes through and along which it turns away from the viewer (\[Lin2008\] §2.2).
 //!
 //! A stroke between two openings becomes a Bézier curve of degree five that leaves both parts along their own silhouettes. Its shape is the
 //! stroke's, seen along the view, in the plane Ω through both ends whose normal is nearest to the view. A closed stroke outlines a hole and becomes

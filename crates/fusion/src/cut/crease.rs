@@ -1,4 +1,4 @@
-//! What a path over the surface costs: less in concave creases, where limbs meet ([LeeLee2002]).
+//! What a path over the surface costs: less in concave creases, where limbs meet (\[LeeLee2002\]).
 
 use mesh_core::{
     Adjacency, Connected, Faces, HalfedgeId, TriMesh, VertexId, corner_angle, mean_curvature_vectors, mixed_areas,

@@ -1,5 +1,5 @@
-//! Intelligent scissoring: a closed path over the surface through a few picks, along concave creases where there are any ([LeeLee2002],
-//! [Funkhouser2004]).
+//! Intelligent scissoring: a closed path over the surface through a few picks, along concave creases where there are any (\[LeeLee2002\],
+//! \[Funkhouser2004\]).
 //!
 //! Dijkstra's algorithm runs over three places on every edge, which gives the strip of triangles; then the places slide along their edges to
 //! the least cost within it. Legs do not share triangles, so the path cannot meet itself.

@@ -1,4 +1,4 @@
-//! Closed curves on a surface made smooth: even samples, averaged in turns that keep the length ([Taubin1995]), and put back.
+//! Closed curves on a surface made smooth: even samples, averaged in turns that keep the length (\[Taubin1995\]), and put back.
 
 use super::Error;
 use glam::DVec3;

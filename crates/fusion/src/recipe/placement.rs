@@ -1,5 +1,5 @@
 //! Primitives that parts ride on: a pose is a place of the primitive's parameter domain, a spin and an offset, and follows when the primitive
-//! is resized ([Lin2008] §4.1).
+//! is resized (\[Lin2008\] §4.1).
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};

@@ -1,4 +1,4 @@
-//! Parts moved so that one of their openings faces another: a rigid alignment with soft correspondences ([Sharf2006]).
+//! Parts moved so that one of their openings faces another: a rigid alignment with soft correspondences (\[Sharf2006\]).
 
 use super::placement::Motion;
 use crate::cut::even;

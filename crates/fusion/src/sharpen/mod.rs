@@ -1,4 +1,4 @@
-//! Roundings taken back: the surfaces beside a fillet are prolonged until they meet in an edge ([Liu2005] §6.2).
+//! Roundings taken back: the surfaces beside a fillet are prolonged until they meet in an edge (\[Liu2005\] §6.2).
 //!
 //! The paper moves the vertices between two linkages onto the profile P1–P0–P2. Here the rounding is found by the ball
 //! that cannot rest on it, taken out, and the planes tangent at its borders, which hold P1–P0 and P0–P2, put in.

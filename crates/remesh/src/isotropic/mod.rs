@@ -45,7 +45,7 @@ pub fn remesh<M: Faces + Positions + Sync>(
     remesh_observed(mesh, frozen, sizing, params, projection, &mut (), watch)
 }
 
-/// Remeshes a surface, telling every edit to `observer`, which may forbid it ([BotschKobbelt2004]).
+/// Remeshes a surface, telling every edit to `observer`, which may forbid it (\[BotschKobbelt2004\]).
 ///
 /// Each round splits edges longer than 4/3 of the wanted length, collapses those shorter than 4/5 of it, flips towards
 /// valence 6, relaxes along the surface towards equal areas, and projects. The boundary and what is frozen keep their

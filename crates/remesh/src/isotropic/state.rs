@@ -16,9 +16,9 @@ pub(crate) enum Kind {
     Fixed,
 }
 
-/// Edges longer than this share of the wanted length are split. [BotschKobbelt2004]
+/// Edges longer than this share of the wanted length are split. \[BotschKobbelt2004\]
 const SPLIT: f64 = 4.0 / 3.0;
-/// Edges shorter than this share of the wanted length are collapsed. [BotschKobbelt2004]
+/// Edges shorter than this share of the wanted length are collapsed. \[BotschKobbelt2004\]
 const COLLAPSE: f64 = 4.0 / 5.0;
 /// The least cosine between the normals of a face before and after an edit.
 pub(crate) const TURN: f64 = 0.3;

@@ -34,7 +34,7 @@ impl Default for Fairing {
     }
 }
 
-/// The vertices' places after fairing all that is not frozen ([BotschFreeform2004]).
+/// The vertices' places after fairing all that is not frozen (\[BotschFreeform2004\]).
 ///
 /// The boundary of the mesh and what is frozen keep their bits. Two or three rings of held vertices around a region make it
 /// meet them with their tangents or curvatures; at a boundary of the mesh nothing is there to be continued, and the

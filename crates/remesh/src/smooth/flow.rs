@@ -23,7 +23,7 @@ impl Flow {
     }
 }
 
-/// The vertices' places after mean-curvature flow ∂x/∂t = −2H·n by implicit steps ([Desbrun1999]).
+/// The vertices' places after mean-curvature flow ∂x/∂t = −2H·n by implicit steps (\[Desbrun1999\]).
 ///
 /// The boundary and what is frozen keep their bits. Each step solves one sparse system; O(n^1.5) for n free vertices.
 /// The same input gives the same bits for any number of threads.

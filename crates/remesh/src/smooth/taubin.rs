@@ -29,7 +29,7 @@ impl Default for Taubin {
 const CHUNK: usize = 1024;
 
 /// The vertices' places after `rounds` pairs of a shrinking and an inflating step towards the mean of the neighbours
-/// ([Taubin1995]).
+/// (\[Taubin1995\]).
 ///
 /// A wave that the mean of the neighbours lowers by the share k keeps ((1 − λk)(1 − μk))^rounds of its height: short waves
 /// vanish, those below `pass` stay, and with them the volume. The boundary and what is frozen keep their bits. O(rounds · n).

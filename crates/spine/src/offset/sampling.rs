@@ -1,4 +1,4 @@
-//! Samples along a crossing of offset patches: evenly by arc length, halved where it bends ([Liu2005] §4.1).
+//! Samples along a crossing of offset patches: evenly by arc length, halved where it bends (\[Liu2005\] §4.1).
 
 use super::OffsetParams;
 use crate::contact::Contact;

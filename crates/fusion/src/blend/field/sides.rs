@@ -83,7 +83,7 @@ impl<'a> Sides<'a> {
         sum.normalize_or(self.faces[face])
     }
 
-    /// The normal whose side is that of the surface, also at edges and vertices ([Baerentzen2005]).
+    /// The normal whose side is that of the surface, also at edges and vertices (\[Baerentzen2005\]).
     fn pseudonormal(&self, near: &ClosestPoint) -> DVec3 {
         let (face, w) = (near.face, near.barycentric);
         let same = |f: &FaceId| self.of[*f] == self.of[face];

@@ -7,7 +7,7 @@ use glam::DVec3;
 use mesh_core::{Faces, Positions, VertexId};
 use param_conformal::{CutRing, Outline};
 
-/// Steps of Taubin's filter along the border, and its two factors ([Taubin1995]).
+/// Steps of Taubin's filter along the border, and its two factors (\[Taubin1995\]).
 const TAUBIN: (usize, f64, f64) = (3, 0.5, -0.53);
 /// Neighbours come no nearer along the linkage than this share of what the two gaps beside them average.
 const LEAST_GAP: f64 = 0.15;
@@ -17,7 +17,7 @@ const ROUNDS: usize = 200;
 /// Opens the region at its longest profile, and gives every border vertex its place on the rectangle.
 ///
 /// The seam begins and ends at the border vertices next to the longest profile's feet, where the plane of that profile
-/// cuts the linkages ([Liu2005] §5.1).
+/// cuts the linkages (\[Liu2005\] §5.1).
 pub(super) fn outline(region: &Region, target: &Target) -> Result<(CutRing, Outline), Refusal> {
     let (local, ring) = (&region.local, &region.ring);
     // Loop 0, the bottom, runs along the right linkage, which is number 1.

@@ -1,4 +1,4 @@
-//! Blends that keep the mesh's connectivity, as published ([Liu2005]): the vertices between the linkages slide onto the
+//! Blends that keep the mesh's connectivity, as published (\[Liu2005\]): the vertices between the linkages slide onto the
 //! swept surface.
 //!
 //! | file | holds |
