@@ -57,6 +57,7 @@ impl Rolling {
             overlap: match self.overlap {
                 Overlap::Shrink => blend::Overlap::Shrink,
                 Overlap::Error => blend::Overlap::Error,
+                Overlap::Trim => blend::Overlap::Trim,
             },
             solver: match self.spine {
                 Spine::Contact => Solver::Contact,
@@ -131,6 +132,8 @@ impl Curve {
 pub enum Overlap {
     /// Use a smaller ball there, fading into the full one; warnings and the report say where and how small
     Shrink,
+    /// Trim the full ball's sweep by itself there: the outside of all places the ball can take, made as a field
+    Trim,
     /// Stop, naming the place and a radius that works
     Error,
 }

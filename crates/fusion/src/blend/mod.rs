@@ -113,6 +113,9 @@ pub enum Overlap {
     /// Use a smaller ball there, fading into the full one, and say so.
     #[default]
     Shrink,
+    /// Let the ball's envelope trim itself: where a sweep of the full ball would fold, the blend is the outside of all
+    /// places the full ball can take, as a field gives it. Refused where a field cannot serve.
+    Trim,
 }
 
 impl Params {
@@ -308,7 +311,7 @@ fn attempt(
         let Trouble::Places { ref places, .. } = trouble else { return Err(trouble) };
         let first = *at_first.get_or_insert(places.len());
         let hopeless = round >= TELLING && places.len() > FEW && 2 * places.len() > first;
-        let refused = params.overlap == Overlap::Error && round >= 2;
+        let refused = params.overlap != Overlap::Shrink && round >= 2;
         if refused || hopeless || round >= rounds || !mends.add(places, params.overlap) {
             return Err(trouble);
         }

@@ -95,7 +95,8 @@ impl Recipe {
             params.overlap = match text.get_ref().as_str() {
                 "shrink" => blend::Overlap::Shrink,
                 "error" => blend::Overlap::Error,
-                _ => return Err(self.error(text.span(), "overlap is shrink or error")),
+                "trim" => blend::Overlap::Trim,
+                _ => return Err(self.error(text.span(), "overlap is shrink, trim or error")),
             };
         }
         if let Some(text) = keys.surface {

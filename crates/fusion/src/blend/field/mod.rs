@@ -48,9 +48,9 @@ use tri_intersect::{EmbedError, EmbedParams, Embedded, embed};
 /// How often the ball is made smaller where the result meets itself.
 const ROUNDS: usize = 6;
 
-/// Whether a field may take the place of a sweep: it can serve all curves, and the ball may give way.
+/// Whether a field may take the place of a sweep: it can serve all curves, and something may give way.
 pub(crate) fn serves(curves: &[BlendCurve], params: &Params) -> bool {
-    params.overlap == Overlap::Shrink
+    params.overlap != Overlap::Error
         && is_arc(params)
         && params.radii == Radii::default()
         && curves.iter().all(|c| c.closed)
