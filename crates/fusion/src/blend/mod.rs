@@ -9,6 +9,7 @@
 //! | `mends.rs` | what has been done so far to make the blend fit |
 //! | `rolling.rs` | a ball rolled along every curve |
 //! | `network.rs` | the nodes at which open curves meet or end |
+//! | `dwindle.rs` | the ball that dwindles where a curve runs out |
 //! | `ending.rs` | rails cut to length there: set back, run out, or stopped at the surface ahead |
 //! | `corner.rs` | how far curves that meet are set back, and the ball that touches all sides |
 //! | `stretch.rs` | a rail cut to length |
@@ -24,6 +25,7 @@
 
 mod auto;
 mod corner;
+mod dwindle;
 mod ending;
 mod field;
 mod fill;

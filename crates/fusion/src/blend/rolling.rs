@@ -1,12 +1,13 @@
 //! The rails: a ball rolled along every curve that has none yet.
 
 use super::Params;
+use super::dwindle::running_out;
 use super::mends::Mends;
-use super::network::{Kind, Network};
+use super::network::Network;
 use super::trouble::Trouble;
 use mesh_core::{Adjacency, Connected, Faces, Positions, TriMesh};
 use rayon::prelude::*;
-use spine::{BlendCurve, Dip, RadiusField, Rail, roll_or_halt};
+use spine::{BlendCurve, Rail, roll_or_halt};
 
 /// Chord length along and across: matched to the input's edges, within one and two tenths of the radius, or less where
 /// the tolerance asks for it.
@@ -25,10 +26,13 @@ pub(super) fn step_length(mesh: &Connected<TriMesh>, curves: &[BlendCurve], para
 
 /// How far ahead of a curve's end its sides are kept apart, in radii.
 pub(super) const REACH_AHEAD: f64 = 6.0;
-/// Length over which a ball runs out, in radii, and its share of the curve where that is short.
-const RUN_OUT: (f64, f64) = (4.0, 0.4);
-/// Share of the radius that a ball has left at the very end.
-const TIP: f64 = 0.03;
+/// How far a ball may go in one step where its way is straight. The edges of a closed curve stand for a round rim more
+/// often than not, so each is seen several times.
+fn longest_stride(mesh: &Connected<TriMesh>, curve: &BlendCurve, radius: f64) -> f64 {
+    let length = curve.length(mesh);
+    let edge = if curve.closed { length / (8 * curve.halfedges.len().max(1)) as f64 } else { length };
+    edge.min(length / 64.0).min(4.0 * radius)
+}
 
 /// Rolls along the curves that have no rail.
 pub(super) fn roll_missing(
@@ -46,11 +50,7 @@ pub(super) fn roll_missing(
         alpha: params.alpha,
         solver: params.solver,
         step,
-        longest: if curves[curve].closed {
-            step
-        } else {
-            (curves[curve].length(mesh) / 64.0).clamp(step, (4.0 * params.radius).max(step))
-        },
+        longest: longest_stride(mesh, &curves[curve], params.radius).max(step),
         sagitta: 0.2 * params.tolerance,
         softenings: mends.softenings.clone(),
         ..spine::Params::new(params.radius)
@@ -85,19 +85,4 @@ pub(super) fn roll_missing(
         }
     }
     if places.is_empty() { Ok(()) } else { Err(Trouble::at("the ball cannot roll on", places)) }
-}
-
-/// The radius along a curve, which dwindles where the curve runs out.
-fn running_out(
-    mesh: &Connected<TriMesh>,
-    curves: &[BlendCurve],
-    network: &Network,
-    curve: usize,
-    mut radius: RadiusField,
-) -> RadiusField {
-    let extent = (RUN_OUT.0 * radius.base).min(RUN_OUT.1 * curves[curve].length(mesh));
-    let nodes = network.ends[curve].iter().flatten().map(|&n| &network.nodes[n]);
-    let tips = nodes.filter(|n| matches!(n.kind, Kind::RunOut { .. }));
-    radius.dips.extend(tips.map(|n| Dip { at: mesh.position(n.vertex), factor: TIP, extent }));
-    radius
 }
