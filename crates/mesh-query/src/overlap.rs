@@ -17,6 +17,12 @@ impl TriBvh {
     /// Collects into `out` (cleared first) the faces whose own box shares a point with `bounds`, in order of id.
     pub fn faces_in_box<M: Faces + Positions>(&self, mesh: &M, bounds: &Bounds, out: &mut Vec<FaceId>) {
         out.clear();
+        self.visit_box(mesh, bounds, |f| out.push(f));
+        out.sort_unstable();
+    }
+
+    /// Hands every such face to `visit`, in no particular order.
+    pub fn visit_box<M: Faces + Positions>(&self, mesh: &M, bounds: &Bounds, mut visit: impl FnMut(FaceId)) {
         if self.nodes.is_empty() || bounds.is_empty() {
             return;
         }
@@ -27,12 +33,11 @@ impl TriBvh {
                 continue;
             }
             if node.is_leaf() {
-                out.extend(self.leaf(node).iter().filter(|&&f| triangle_bounds(mesh, f).overlaps(bounds)));
+                self.leaf(node).iter().filter(|&&f| triangle_bounds(mesh, f).overlaps(bounds)).for_each(|&f| visit(f));
             } else {
                 stack.extend([node.first_index, node.first_index + 1]);
             }
         }
-        out.sort_unstable();
     }
 
     /// The pairs (face of `a`, face of `b`) whose boxes share a point (touching counts), in order. `self` is the tree

@@ -10,6 +10,8 @@ use rayon::prelude::*;
 
 /// Pairs tested between two looks at the watch.
 const BATCH: usize = 1 << 16;
+/// Listed faces tested between two looks.
+const LIST: usize = 1 << 12;
 
 /// Every pair of faces that meet where they should not: sharing no vertex and touching at all; sharing a vertex and
 /// meeting elsewhere; sharing an edge and folded flat onto each other; sharing all three. A face without area is listed
@@ -53,20 +55,23 @@ pub fn self_intersections_among<M: Faces + Positions + Sync>(
         .filter(|&f| listed[f.index()] || near.reaches(&box_of(mesh, f)))
         .collect();
     let Ok(tree) = TriBvh::build_subset(mesh, &close) else { return Ok(vec![]) };
-    let candidates: Vec<[FaceId; 2]> = unique
-        .par_iter()
-        .map_init(Vec::new, |near, &f| {
-            tree.faces_in_box(mesh, &box_of(mesh, f), near);
+    let met = |&f: &FaceId| {
+        let mut met = vec![];
+        // Pairs are tested as they are found: of needles fanned out over a plane nearly every two have boxes that meet.
+        tree.visit_box(mesh, &box_of(mesh, f), |g| {
             // Of two listed faces the lower one names the pair.
-            near.iter()
-                .filter(|&&g| g != f && !(listed[g.index()] && g < f))
-                .map(|&g| [f.min(g), f.max(g)])
-                .collect::<Vec<_>>()
-        })
-        .flatten_iter()
-        .collect();
-    let mut found = degenerate(mesh, &points, unique);
-    found.extend(meeting(mesh, &points, &candidates, watch)?);
+            if g != f && !(listed[g.index()] && g < f) && clash(mesh, &points, [f, g]) {
+                met.push([f.min(g), f.max(g)]);
+            }
+        });
+        met
+    };
+    let mut found = vec![];
+    for (i, batch) in unique.chunks(LIST).enumerate() {
+        watch.step("self-intersections", (i * LIST) as f64 / unique.len() as f64)?;
+        found.par_extend(batch.par_iter().map(met).flatten_iter());
+    }
+    found.extend(degenerate(mesh, &points, unique));
     found.sort_unstable();
     Ok(found)
 }
@@ -141,13 +146,14 @@ fn meeting<M: Faces + Sync>(
     let mut found = vec![];
     for (i, batch) in candidates.chunks(BATCH).enumerate() {
         watch.step("self-intersections", (i * BATCH) as f64 / candidates.len() as f64)?;
-        let bad = |pair: &&[FaceId; 2]| {
-            let [p, q] = pair.map(|f| mesh.corners(f));
-            faces_clash(p, q, |v| points[v.index()])
-        };
-        found.par_extend(batch.par_iter().filter(bad).copied());
+        found.par_extend(batch.par_iter().filter(|&&pair| clash(mesh, points, pair)).copied());
     }
     Ok(found)
+}
+
+fn clash<M: Faces>(mesh: &M, points: &[DVec3], pair: [FaceId; 2]) -> bool {
+    let [p, q] = pair.map(|f| mesh.corners(f));
+    faces_clash(p, q, |v| points[v.index()])
 }
 
 /// Whether two faces of one mesh meet where they should not.

@@ -25,7 +25,8 @@ pub(crate) fn between(
     let walls = opened.loops.iter().flat_map(|c| c.windows(2).map(|w| [w[0], w[1]]));
     let mut seeds = Vec::new();
     for curve in curves {
-        let Some(h) = curve.halfedges.iter().find_map(|&h| halfedge(cut, mesh.tail(h), mesh.head(h))) else {
+        let whole = curve.halfedges.iter().find_map(|&h| halfedge(cut, mesh.tail(h), mesh.head(h)));
+        let Some(h) = whole.or_else(|| longest_piece(mesh, cut, &opened.embedded.origins, curve)) else {
             let at = curve.halfedges.first().map_or(DVec3::ZERO, |&h| mesh.position(mesh.tail(h)));
             return Err(Trouble::at("a linkage crosses the blend curve", vec![at]));
         };
@@ -41,6 +42,26 @@ pub(crate) fn between(
         }
     }
     if leaks.is_empty() { Ok(removed) } else { Err(Trouble::at("the linkages do not enclose the blend curve", leaks)) }
+}
+
+/// The longest piece of a curve each of whose edges is cut: one that runs out at both ends has little of it beyond.
+fn longest_piece(
+    mesh: &Connected<TriMesh>,
+    cut: &Connected<&TriMesh>,
+    origins: &Origins,
+    curve: &BlendCurve,
+) -> Option<HalfedgeId> {
+    let pieces = curve.halfedges.iter().flat_map(|&h| {
+        let edge = [mesh.tail(h), mesh.head(h)];
+        let on_edge = |v: &VertexId| matches!(origins.vertices[*v], VertexOrigin::Edge { ends, .. } if ends == edge || ends == [edge[1], edge[0]]);
+        let mut points: Vec<VertexId> = cut.vertex_ids().filter(on_edge).chain(edge).collect();
+        let from = mesh.position(edge[0]);
+        points.sort_by(|&a, &b| cut.position(a).distance(from).total_cmp(&cut.position(b).distance(from)));
+        points.windows(2).map(|w| [w[0], w[1]]).collect::<Vec<_>>()
+    });
+    let length = |[a, b]: &[VertexId; 2]| cut.position(*a).distance(cut.position(*b));
+    let [a, b] = pieces.max_by(|a, b| length(a).total_cmp(&length(b)))?;
+    halfedge(cut, a, b)
 }
 
 fn halfedge<M: Adjacency>(mesh: &M, a: VertexId, b: VertexId) -> Option<HalfedgeId> {

@@ -4,7 +4,7 @@ use fusion::blend::{Blended, Overlap, Params, blend, max_radius};
 use fusion::features::{self, feature_curves};
 use fusion::round;
 use glam::DVec3;
-use mesh_core::{Connected, Faces, Positions, TriMesh, VertexId, VertexOrigin, Watch, shapes, volume};
+use mesh_core::{Connected, Faces, HalfedgeId, Positions, TriMesh, VertexId, VertexOrigin, Watch, shapes, volume};
 use mesh_io::{Format, Model};
 use spine::BlendCurve;
 use std::f64::consts::PI;
@@ -136,4 +136,65 @@ fn half_a_rim_runs_out_at_both_ends() {
         })
         .collect();
     assert!(mesh.vertex_ids().all(|v| near(mesh.position(v)) || kept.contains(&v)));
+}
+
+/// A block with a step in its top whose height falls to nothing at (½, 0, 1): there a valley and a ridge part at 18 degrees.
+fn tapering_step() -> TriMesh {
+    let tip = DVec3::new(0.5, 0.0, 1.0);
+    let positions = vec![
+        tip,
+        DVec3::new(0.0, -1.0, 0.0),
+        DVec3::new(2.0, -1.0, 0.0),
+        DVec3::new(2.0, 1.0, 0.0),
+        DVec3::new(0.0, 1.0, 0.0),
+        DVec3::new(0.0, -1.0, 1.0),
+        DVec3::new(2.0, -1.0, 1.0),
+        DVec3::new(2.0, 0.0, 1.0),
+        DVec3::new(2.0, 0.0, 1.5),
+        DVec3::new(2.0, 1.0, 1.5),
+        DVec3::new(0.5, 1.0, 1.0),
+        DVec3::new(0.0, 1.0, 1.0),
+    ];
+    let polygons: [&[u32]; 8] = [
+        &[0, 10, 11, 5, 6, 7],
+        &[0, 8, 9, 10],
+        &[0, 7, 8],
+        &[7, 6, 2, 3, 9, 8],
+        &[10, 9, 3, 4, 11],
+        &[1, 2, 6, 5],
+        &[4, 1, 5, 11],
+        &[1, 4, 3, 2],
+    ];
+    let fan = |p: &&[u32]| (1..p.len() - 1).map(|k| [p[0], p[k], p[k + 1]].map(VertexId)).collect::<Vec<_>>();
+    TriMesh { positions, faces: polygons.iter().flat_map(fan).collect() }
+}
+
+/// Both linkages on the wall of such a step have to stay within its height, so both balls dwindle long before its end.
+#[test]
+fn a_step_that_tapers_off_is_rounded_to_its_tip() {
+    let mesh = Connected::new(tapering_step()).unwrap();
+    let all = curves(&mesh);
+    for r in [0.01, 0.02, 0.05] {
+        let done = rounded(&mesh, &all, &Params::new(r));
+        let connected = Connected::new(&done.mesh).unwrap();
+        // Far from the tip the valley has its full radius: no kept vertex or face is near its edge there.
+        let middle = DVec3::new(1.6, 0.0, 1.0);
+        let nearest = done.mesh.positions.iter().map(|p| p.distance(middle)).fold(f64::INFINITY, f64::min);
+        assert!(nearest > 0.4 * r, "{nearest} with {r}");
+        assert!(connected.face_count() > mesh.face_count());
+    }
+}
+
+/// No piece of such a curve is left whole by the cuts.
+#[test]
+fn a_curve_of_one_edge_runs_out_at_both_ends() {
+    let ball = Connected::new(shapes::uv_sphere(1.0, 24, 12)).unwrap();
+    let equator = |v: VertexId| ball.position(v).z.abs() < 1e-9;
+    let mut all = (0..3 * ball.face_count() as u32).map(HalfedgeId);
+    let edge = all.find(|&h| equator(ball.tail(h)) && equator(ball.head(h))).unwrap();
+    let curve = BlendCurve { halfedges: vec![edge], closed: false };
+    for r in [0.002, 0.02] {
+        let done = rounded(&ball, std::slice::from_ref(&curve), &Params::new(r));
+        assert_eq!(done.strips, 1);
+    }
 }

@@ -47,6 +47,8 @@ use tri_intersect::{EmbedError, EmbedParams, Embedded, embed};
 
 /// How often the ball is made smaller where the result meets itself.
 const ROUNDS: usize = 6;
+/// Where that does not help, shares of the radius at which the curves are blended as a whole.
+const SMALLER: [f64; 4] = [0.7, 0.5, 0.35, 0.25];
 
 /// Whether a field may take the place of a sweep: it can serve all curves, and something may give way.
 pub(crate) fn serves(curves: &[BlendCurve], params: &Params) -> bool {
@@ -75,7 +77,9 @@ pub(crate) fn blend(
     params: &Params,
     watch: &Watch,
 ) -> Result<Blended, Error> {
-    let [first, ..] = curves else { return Err(Error::NoCurves) };
+    if curves.is_empty() {
+        return Err(Error::NoCurves);
+    }
     if curves.iter().any(|c| !c.closed) {
         return Err(Error::NotByField("use --surface stitch for open ones"));
     }
@@ -86,15 +90,39 @@ pub(crate) fn blend(
         return Err(Error::NotByField("use --surface stitch for radii that vary"));
     }
     let sides = Sides::new(mesh, curves, convexity).map_err(|t| t.into_error(params.radius))?;
+    let refusal = match settle_on(&sides, curves, params, watch) {
+        Err(e @ Error::DoesNotFit { .. }) if params.overlap == Overlap::Shrink => e,
+        other => return other,
+    };
+    for share in SMALLER {
+        let smaller = Params { radius: share * params.radius, ..params.clone() };
+        match settle_on(&sides, curves, &smaller, watch) {
+            Err(Error::DoesNotFit { .. }) => {}
+            Err(other) => return Err(other),
+            Ok(mut blended) => {
+                blended.full_share = 0.0;
+                if let Error::DoesNotFit { at, .. } = refusal {
+                    blended.shrunk.insert(0, (at, smaller.radius));
+                }
+                return Ok(blended);
+            }
+        }
+    }
+    Err(refusal)
+}
+
+/// Blends with a ball of one radius, made smaller where the result meets itself.
+fn settle_on(sides: &Sides<'_>, curves: &[BlendCurve], params: &Params, watch: &Watch) -> Result<Blended, Error> {
+    let mesh = sides.mesh;
     let edge = step_length(mesh, curves, params);
     let mut radius = RadiusField::constant(params.radius);
     let mut spots: Vec<(DVec3, u32)> = vec![];
     let mut earlier = vec![];
     params.sketch.begin(mesh, curves);
-    let page = params.sketch.page(mesh, first);
+    let page = params.sketch.page(mesh, &curves[0]);
     for round in 0.. {
         watch.step("blend", round as f64 / ROUNDS as f64)?;
-        let trouble = match attempt(&sides, &radius, edge, params, &mut earlier, page, watch) {
+        let trouble = match attempt(sides, &radius, edge, params, &mut earlier, page, watch) {
             Ok(mut blended) => {
                 blended.full_share = full_share(mesh, curves, &radius);
                 blended.shrunk = radius.dips.iter().map(|d| (d.at, radius.at(d.at).0)).collect();
