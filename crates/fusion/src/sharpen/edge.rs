@@ -33,10 +33,10 @@ impl Edge {
         let kept = advancing(&places, &met, |[s, t]| one.at(s).0 + other.at(t).0, closed);
         places = kept.iter().map(|&i| places[i]).collect();
         let mut points: Vec<DVec3> = kept.iter().map(|&i| met[i]).collect();
-        if let Some(ends) = &rim.ends {
+        if let Some([after, before]) = &rim.ends {
             // The first end lies at the end of side 0.
             let last = points.len() - 1;
-            for (i, end) in [(last, &ends[0]), (0, &ends[1])] {
+            for (i, end) in [(last, after), (0, before)] {
                 let [s, t] = places[i];
                 let along = one.at(s).1.cross(other.at(t).1).normalize_or_zero();
                 let slope = end.normal.dot(along);
@@ -74,7 +74,9 @@ impl Edge {
                 let start = edge[0].1;
                 edge.push((edge[0].0, start + m as f64));
                 let wrapped = |i: f64| i + m as f64 * ((start - i) / m as f64).ceil();
-                chain.iter_mut().for_each(|c| c.1 = wrapped(c.1));
+                for place in &mut chain {
+                    place.1 = wrapped(place.1);
+                }
                 chain.sort_by(|a, b| a.1.total_cmp(&b.1));
                 chain.push((chain[0].0, chain[0].1 + m as f64));
             }

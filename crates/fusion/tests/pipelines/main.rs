@@ -4,6 +4,7 @@ mod analytic;
 mod compose;
 mod corners;
 mod details;
+mod invariants;
 mod keep;
 mod placement;
 mod radii;
