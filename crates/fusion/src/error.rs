@@ -77,7 +77,7 @@ pub enum Error {
     /// The result failed its own validation; nothing is returned.
     #[error(transparent)]
     Invalid(#[from] Invalid),
-    /// See [`Watch`].
+    /// See [`mesh_core::Watch`].
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }

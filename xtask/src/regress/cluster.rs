@@ -17,7 +17,7 @@ const SAMPLES: usize = 10_000;
 /// Largest distance allowed between them, as a share of a net's extent.
 const AGREEMENT: f64 = 1e-12;
 
-/// The models of [EdgeCluster2019], and the contact and degree they are blended with.
+/// The models of \[EdgeCluster2019\], and the contact and degree they are blended with.
 fn cases() -> Vec<(&'static str, solids::Solid, usize, Option<Degree>)> {
     vec![
         ("cluster-pressure-meter", solids::pressure_meter(), 1, Some(Degree::Tensor(4, 2))),
