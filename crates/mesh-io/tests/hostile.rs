@@ -94,3 +94,30 @@ fn every_single_byte_of_binary_headers() {
         }
     }
 }
+
+/// Found by fuzzing: an attribute of which one number is infinite was written as a word that no reader takes.
+#[test]
+fn attributes_that_are_not_finite_are_none() {
+    const MARK: f64 = 0.34375;
+    let mesh = shapes::cuboid(DVec3::ONE);
+    let corners = 3 * mesh.face_count();
+    let model = Model {
+        uvs: Some(vec![[MARK, 0.5]; corners].into()),
+        normals: Some(vec![DVec3::new(0.0, MARK, 1.0); corners].into()),
+        colors: Some(vec![[1.0, 1.0, MARK, 1.0]; corners].into()),
+        ..mesh.into()
+    };
+    let mut glb = to_bytes(&model, Format::Glb).unwrap();
+    let mark = (MARK as f32).to_le_bytes();
+    let places: Vec<usize> = (0..glb.len() - 4).filter(|&i| glb[i..i + 4] == mark).collect();
+    assert!(!places.is_empty());
+    for at in places {
+        glb[at..at + 4].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    }
+    let read = read_stream(&glb, Format::Glb).unwrap();
+    assert!(read.colors.iter().flat_map(|m| m.as_slice()).flatten().all(|x| x.is_nan()));
+    for format in Format::ALL {
+        let again = read_stream(&to_bytes(&read, format).unwrap(), format).unwrap();
+        assert_eq!(again.mesh.face_count(), 12, "{format}");
+    }
+}

@@ -278,7 +278,10 @@ impl Scene<'_> {
         }
         if let Some(colors) = colors {
             parts.colors.resize(before, [f64::NAN; 4]);
-            let value = |row: &[f64]| [row[0], row[1], row[2], row.get(3).copied().unwrap_or(1.0)];
+            let value = |row: &[f64]| match [row[0], row[1], row[2], row.get(3).copied().unwrap_or(1.0)] {
+                color if color.iter().all(|x| x.is_finite()) => color,
+                _ => [f64::NAN; 4],
+            };
             parts.colors.extend(corners().map(|i| value(colors.row(i))));
         }
         parts.group_of.resize(parts.model.mesh.faces.len(), group);

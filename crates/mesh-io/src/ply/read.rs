@@ -308,5 +308,6 @@ fn vertex<B: Body>(value: f64, body: &B) -> Result<u32, Fault> {
 
 fn rgba(row: &[f64], columns: [Option<usize>; 4], full: [f64; 4]) -> [f64; 4] {
     let component = |i: usize| columns[i].map_or(1.0, |c| row[c] / full[i]);
-    [component(0), component(1), component(2), component(3)]
+    let color = [component(0), component(1), component(2), component(3)];
+    if color.iter().all(|x| x.is_finite()) { color } else { [f64::NAN; 4] }
 }
