@@ -39,6 +39,10 @@ pub struct Rolling {
     /// Largest distance of the blend's chords from its cross-section, as a share of the radius
     #[arg(long, value_name = "SHARE", default_value = "0.005", value_parser = tolerance, requires = "radius")]
     pub tolerance: f64,
+    /// Blend on the coarsest level of a decimation hierarchy that is fine enough for the radius, and put the finer levels'
+    /// details back; with `--surface keep`
+    #[arg(long, requires_all = ["radius", "surface"])]
+    pub multiresolution: bool,
     /// Write what the stages of the blend drew into this folder as OBJ files: the ball's way, the contact curves,
     /// profiles, patches and surfaces, even where the blend is refused (docs/blend.md lists them)
     #[arg(long, value_name = "DIR", requires = "radius")]
@@ -48,6 +52,12 @@ pub struct Rolling {
 impl Rolling {
     /// The same for the library; `diagonal` is what lengths may be a share of.
     pub fn with_radius(&self, radius: Radius, diagonal: f64) -> Result<blend::Params, Failure> {
+        if self.multiresolution && !matches!(self.surface, Surface::Keep) {
+            return Err(Failure::usage(
+                "--multiresolution needs --surface keep: details are put back on the same triangles",
+            ));
+        }
+        let keep = blend::keep::Params { levels: if self.multiresolution { LEVELS } else { 0 }, ..Default::default() };
         let at: Vec<_> = self.radius_at.iter().map(|&(p, r)| (p, r.resolve(diagonal))).collect();
         let (radius, radii) = blend::Radii::of(radius.sides.map(|r| r.resolve(diagonal)), &at);
         Ok(blend::Params {
@@ -68,7 +78,7 @@ impl Rolling {
             surface: match self.surface {
                 Surface::Auto => blend::Surface::Auto,
                 Surface::Stitch => blend::Surface::Stitch,
-                Surface::Keep => blend::Surface::Keep(blend::keep::Params::default()),
+                Surface::Keep => blend::Surface::Keep(keep),
                 Surface::Field => blend::Surface::Field,
             },
             sketch: if self.debug_geometry.is_some() { Sketch::new() } else { Sketch::default() },
@@ -99,6 +109,9 @@ impl Rolling {
         result.and_then(|value| written.map(|()| value))
     }
 }
+
+/// Most levels of a hierarchy, each of about two thirds of the vertices of the one before.
+const LEVELS: usize = 6;
 
 /// The cross-section as typed.
 #[derive(Clone, Debug, PartialEq)]

@@ -96,6 +96,17 @@ pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Re
     }
     *report.figures.entry("shrunk_places".into()).or_default() += blended.shrunk.len() as f64;
     *report.figures.entry("run_outs".into()).or_default() += blended.run_outs.len() as f64;
+    if let blend::Surface::Keep(how) = &params.surface
+        && how.levels > 0
+    {
+        report.figures.insert("levels".into(), blended.levels as f64);
+        report.notes.push(match blended.levels {
+            0 => "no coarser level served, so the blend was made on the mesh itself".into(),
+            levels => format!(
+                "the blend was made on level {levels} of a decimation hierarchy: vertices beside it that came back with their details moved with it"
+            ),
+        });
+    }
     for at in &blended.run_outs {
         report.notes.push(format!("the blend runs out in a point at {at}, where no surface ends it"));
     }
@@ -130,6 +141,7 @@ mod tests {
             shrunk: shrunk.to_vec(),
             fallbacks: vec![],
             run_outs: vec![DVec3::ZERO],
+            levels: 0,
             full_share,
         };
         let (params, mut report) = (blend::Params::new(0.5), Report::default());

@@ -231,3 +231,33 @@ fn keep_moves_vertices_alone() {
     let missing = bench.run(&format!("blend joined.off -o no.off --radius 0.2 {seam} --profile none.json")).expect(3);
     assert!(missing.stderr.contains("none.json"));
 }
+
+/// On a coarser level the same triangles come out, with those away from the blend untouched, and about the same shape.
+#[test]
+fn multiresolution_keeps_triangles_and_details() {
+    let bench = Bench::new();
+    let at = |z: f64| DVec3::new(0.003, 0.007, z);
+    for (name, z) in [("low.ply", -0.6), ("high.ply", 0.6)] {
+        let ball = shapes::posed(shapes::icosphere(1.0, 5), DQuat::IDENTITY, at(z));
+        mesh_io::write(&ball.into(), &bench.path(name)).unwrap();
+    }
+    bench.run("union low.ply high.ply -o joined.off").expect(0);
+    let line = "blend joined.off --radius 0.3 --surface keep --near 0.8,0,0 --angle 25 --report r.json";
+    bench.run(&format!("{line} -o fine.off")).expect(0);
+    bench.run(&format!("{line} -o coarse.off --multiresolution")).expect(0);
+    let report = json(&bench.read("r.json"));
+    assert!(report["figures"]["levels"].as_f64().is_some_and(|n| n >= 1.0), "{}", report["figures"]);
+    let rows = |name: &str| bench.read(name).lines().skip(2).map(String::from).collect::<Vec<_>>();
+    let [joined, coarse] = ["joined.off", "coarse.off"].map(rows);
+    let vertices = |rows: &[String]| rows.iter().filter(|r| !r.starts_with("3 ")).cloned().collect::<Vec<_>>();
+    let [before, after] = [&joined, &coarse].map(|r| vertices(r));
+    assert_eq!(joined[before.len()..], coarse[after.len()..]);
+    // Away from the seam, whose circle has radius 0.8, all bits stay.
+    let far = |row: &String| row.split(' ').nth(2).unwrap().parse::<f64>().unwrap().abs() > 0.8;
+    let moved = before.iter().zip(&after).filter(|(a, b)| a != b);
+    assert!(moved.clone().count() > 100 && !moved.clone().any(|(a, _)| far(a)));
+    let [plain, fine, coarse] = ["joined.off", "fine.off", "coarse.off"].map(|f| volume(&bench, f));
+    assert!(((coarse - plain) / (fine - plain) - 1.0).abs() < 0.1, "{plain} {fine} {coarse}");
+    let wrong = bench.run("blend joined.off -o no.off --radius 0.3 --multiresolution --surface stitch").expect(2);
+    assert!(wrong.stderr.contains("keep"), "{}", wrong.stderr);
+}

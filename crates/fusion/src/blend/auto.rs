@@ -149,6 +149,7 @@ impl<'a> SoFar<'a> {
             shrunk: vec![],
             fallbacks: vec![],
             run_outs: vec![],
+            levels: 0,
             full_share: 1.0,
         };
         Self { input, all, mesh: None, blended, length: 0.0 }
@@ -198,6 +199,7 @@ impl<'a> SoFar<'a> {
         so_far.residual = so_far.residual.max(made.residual);
         so_far.shrunk.extend(made.shrunk);
         so_far.run_outs.extend(made.run_outs);
+        so_far.levels = so_far.levels.max(made.levels);
         so_far.full_share =
             (so_far.full_share * self.length + made.full_share * own) / (self.length + own).max(f64::MIN_POSITIVE);
         self.length += own;

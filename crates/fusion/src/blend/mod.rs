@@ -162,6 +162,8 @@ pub struct Blended {
     pub fallbacks: Vec<(DVec3, &'static str)>,
     /// Where a curve ends alone with no surface to stop at, so that the blend runs out in a point.
     pub run_outs: Vec<DVec3>,
+    /// On which level of a decimation hierarchy the blend was made; 0 is the mesh itself.
+    pub levels: usize,
     /// Share of the spine's length on which the ball has its full radius.
     pub full_share: f64,
 }
@@ -396,6 +398,7 @@ fn assemble(
         shrunk: Vec::new(),
         fallbacks: Vec::new(),
         run_outs: network.run_outs().map(|v| mesh.position(v)).collect(),
+        levels: 0,
         full_share: 1.0,
     })
 }

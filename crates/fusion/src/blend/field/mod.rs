@@ -258,6 +258,7 @@ fn attempt(
         shrunk: vec![],
         fallbacks: vec![],
         run_outs: vec![],
+        levels: 0,
         full_share: 1.0,
     })
 }

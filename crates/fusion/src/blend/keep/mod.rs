@@ -8,9 +8,11 @@
 //! | `region.rs` | the ring of triangles around the curve that the blend takes |
 //! | `border.rs` | where the ring's two borders go on the linkages |
 //! | `domain.rs` | the ring laid onto the surface's rectangle and smoothed there |
+//! | `coarse.rs` | the same on a coarser level, with details put back |
 //! | `refusal.rs` | what cannot be served, and why |
 
 mod border;
+mod coarse;
 mod domain;
 mod refusal;
 mod region;
@@ -42,12 +44,15 @@ pub struct Params {
     pub relaxation: RelaxParams,
     /// Samples along a spine before refinement.
     pub samples: u32,
+    /// Most levels of a decimation hierarchy on the coarsest of which that serves the blend is made, before details are
+    /// put back ([Liu2005] §6.3); 0 blends the mesh itself.
+    pub levels: usize,
 }
 
 impl Default for Params {
     fn default() -> Self {
         // n = 40: [Liu2005] §4.1.
-        Self { seam: Seam::Periodic, relaxation: RelaxParams::default(), samples: 40 }
+        Self { seam: Seam::Periodic, relaxation: RelaxParams::default(), samples: 40, levels: 0 }
     }
 }
 
@@ -57,6 +62,20 @@ impl Default for Params {
 /// # Errors
 /// [`Error::Keep`] names what cannot be served, where and why; [`Error::Spine`] where the ball cannot be rolled.
 pub fn blend(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &BlendParams,
+    how: &Params,
+    watch: &Watch,
+) -> Result<Blended, Error> {
+    if how.levels > 0 {
+        return coarse::blend(mesh, curves, params, how, watch);
+    }
+    blend_level(mesh, curves, params, how, watch)
+}
+
+/// One level.
+fn blend_level(
     mesh: &Connected<TriMesh>,
     curves: &[BlendCurve],
     params: &BlendParams,
@@ -105,6 +124,7 @@ pub fn blend(
         shrunk: Vec::new(),
         fallbacks: Vec::new(),
         run_outs: Vec::new(),
+        levels: 0,
         full_share: 1.0,
     })
 }
