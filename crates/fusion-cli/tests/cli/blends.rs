@@ -238,8 +238,8 @@ fn even_drum() -> String {
     let cap = |z: f64| (1..caps).map(move |k| (f64::from(k) / f64::from(caps), z));
     let wall = (0..=rows).map(|k| (1.0, 2.0 * f64::from(k) / f64::from(rows) - 1.0));
     let rings: Vec<(f64, f64)> = cap(-1.0).chain(wall).chain(cap(1.0).rev()).collect();
-    let last = around * (rings.len() as i32 - 1);
-    let faces = 2 * around * rings.len() as i32;
+    let last = around * (2 * (caps - 1) + rows);
+    let faces = 2 * (last + around);
     let mut text = format!("OFF\n{} {faces} 0\n", last + around + 2);
     for &(r, z) in &rings {
         for i in 0..around {

@@ -84,7 +84,7 @@ fn a_post_stands_on_its_plate_again() {
 }
 
 /// An outline, all of which its first point sees, drawn out from z = 0 to 1.
-fn prism(outline: Vec<[f64; 2]>) -> Model {
+fn prism(outline: &[[f64; 2]]) -> Model {
     let n = outline.len() as u32;
     let level = |z: f64| outline.iter().map(move |p| DVec3::new(p[0], p[1], z)).collect::<Vec<_>>();
     let caps = (1..n - 1).flat_map(|i| [[0, i + 1, i], [n, n + i, n + i + 1]]);
@@ -112,9 +112,10 @@ fn what_cannot_be_sharpened_says_why() {
         let (sin, cos) = (FRAC_PI_2 * f64::from(k) / 8.0).sin_cos();
         [0.7 - 0.2 * sin, 0.7 - 0.2 * cos]
     });
-    let outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5]].into_iter().chain(arc).chain([[0.5, 1.0], [0.0, 1.0]]).collect();
+    let outline: Vec<_> =
+        [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5]].into_iter().chain(arc).chain([[0.5, 1.0], [0.0, 1.0]]).collect();
     let inner = DVec3::new(0.555, 0.555, 0.5);
-    assert!(matches!(refusal(sharp(&prism(outline), &[inner], None)), Refusal::OpenValley { .. }));
+    assert!(matches!(refusal(sharp(&prism(&outline), &[inner], None)), Refusal::OpenValley { .. }));
     // A picked place that is not a number.
     assert!(sharp(&all, &[DVec3::NAN], None).is_err() && sharp(&all, &[on_edge], Some(f64::NAN)).is_err());
 }
