@@ -48,7 +48,8 @@ pub fn max_radius(part: &Model, params: &Params, watch: &Watch) -> Result<Limit,
     Ok(blend::max_radius(&mesh, &curves, &params.blend, watch)?)
 }
 
-/// The same for each of `curves` alone; `None` where a 256th of the curve's box is too large already, and for curves of more
+/// Roughly the same for each of `curves` alone, without a look at smaller radii; `None` where a 256th of the curve's box is too
+/// large already, and for curves of more
 /// than 40 edges or after 400 edges in all: a list is to be made in seconds. Ask for those alone.
 ///
 /// # Errors
@@ -73,7 +74,7 @@ pub fn max_radius_of_each(
             return Ok(None);
         }
         let chain = BlendCurve { halfedges: curve.halfedges.clone(), closed: curve.closed };
-        match blend::max_radius_above(HALVINGS, mesh, &[chain], &blend::Params::new(1.0), watch) {
+        match blend::rough_max_radius(HALVINGS, mesh, &[chain], &blend::Params::new(1.0), watch) {
             Ok(limit) => Ok(Some(limit)),
             Err(blend::Error::Cancelled(c)) => Err(c.into()),
             Err(_) => Ok(None),

@@ -8,7 +8,7 @@ use spine::BlendCurve;
 /// How large a ball may be, and why no larger.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
-    /// The largest radius that works, within half a percent; the smallest tried that does not is at most that much larger.
+    /// The largest radius that works, within half a percent: the smallest tried that does not is at most that much larger.
     pub radius: f64,
     /// What goes wrong beyond it.
     pub what: &'static str,
@@ -22,11 +22,15 @@ const CLOSE_ENOUGH: f64 = 1.005;
 /// inverse square of the radius.
 const START: f64 = 1.0 / 64.0;
 const GROWTH: f64 = 1.5;
-/// How often the first radius is halved when it fails.
+/// How often a radius that fails is halved.
 const HALVINGS: u32 = 10;
+/// Shares of a radius that works at which smaller ones are tried too, as far as they are a thousandth of the diagonal.
+const BELOW: [f64; 8] = [0.9, 0.7, 0.5, 0.35, 0.25, 0.125, 0.0625, 0.03];
+const LEAST: f64 = 1e-3;
 
-/// The end of the interval in which every radius can be blended along `curves` with [`Overlap::Error`]: radii are tried
-/// from a 64th of the curves' box downwards until one works, then upwards until one fails, and the gap is halved.
+/// The end of the interval from 0 in which every radius can be blended along `curves` with [`Overlap::Error`]: radii are
+/// tried from a 64th of the curves' box downwards until one works, then upwards until one fails, and the gap is halved.
+/// Eight smaller ones are tried then; if one fails, the search goes on below it.
 ///
 /// # Errors
 /// [`Error::DoesNotFit`] if even the smallest fails; those without a place as [`super::blend`].
@@ -36,61 +40,101 @@ pub fn max_radius(
     params: &Params,
     watch: &Watch,
 ) -> Result<Limit, Error> {
-    max_radius_above(HALVINGS, mesh, curves, params, watch)
+    let search = Search { mesh, curves, params, watch };
+    let diagonal = search.diagonal();
+    let mut found = search.bracket(START * diagonal, None, HALVINGS)?;
+    let below = |limit: &Limit| -> Result<Option<Failure>, Error> {
+        let smaller = BELOW.map(|share| share * limit.radius).into_iter().filter(|&r| r >= LEAST * diagonal);
+        for radius in smaller {
+            if let Some(failure) = search.fails(radius)? {
+                return Ok(Some(failure));
+            }
+        }
+        Ok(None)
+    };
+    while let Some(failure) = below(&found)? {
+        found = search.bracket(0.5 * failure.radius, Some(failure), HALVINGS)?;
+    }
+    Ok(found)
 }
 
-/// The same, where the first radius is halved no more than `halvings` times: very small balls on long edges cost seconds.
-pub(crate) fn max_radius_above(
+/// The largest radius that fits, from a first one that is halved no more than `halvings` times, and without a look at
+/// smaller ones: for lists that are to be made in seconds.
+pub(crate) fn rough_max_radius(
     halvings: u32,
     mesh: &Connected<TriMesh>,
     curves: &[BlendCurve],
     params: &Params,
     watch: &Watch,
 ) -> Result<Limit, Error> {
-    let ends = |h: &HalfedgeId| [mesh.position(mesh.tail(*h)), mesh.position(mesh.head(*h))];
-    let points = curves.iter().flat_map(|c| &c.halfedges).flat_map(ends);
-    let bounds = points.fold(Bounds::EMPTY, |b, p| b.union(Bounds::of([p; 3])));
-    let diagonal = bounds.max.distance(bounds.min);
-    let fits = |radius: f64| {
-        let params = Params { radius, overlap: Overlap::Error, ..params.clone() };
-        match attempt(mesh, curves, &params, ROUNDS, watch) {
+    let search = Search { mesh, curves, params, watch };
+    search.bracket(START * search.diagonal(), None, halvings)
+}
+
+/// A radius that does not fit, and why.
+struct Failure {
+    radius: f64,
+    what: &'static str,
+    at: Option<DVec3>,
+}
+
+struct Search<'a> {
+    mesh: &'a Connected<TriMesh>,
+    curves: &'a [BlendCurve],
+    params: &'a Params,
+    watch: &'a Watch,
+}
+
+impl Search<'_> {
+    /// Of the box around the curves.
+    fn diagonal(&self) -> f64 {
+        let ends = |h: &HalfedgeId| [self.mesh.tail(*h), self.mesh.head(*h)].map(|v| self.mesh.position(v));
+        let points = self.curves.iter().flat_map(|c| &c.halfedges).flat_map(ends);
+        let bounds = points.fold(Bounds::EMPTY, |b, p| b.union(Bounds::of([p; 3])));
+        bounds.max.distance(bounds.min)
+    }
+
+    fn fails(&self, radius: f64) -> Result<Option<Failure>, Error> {
+        let params = Params { radius, overlap: Overlap::Error, ..self.params.clone() };
+        match attempt(self.mesh, self.curves, &params, ROUNDS, self.watch) {
             Ok(_) => Ok(None),
-            Err(Trouble::Places { what, places }) => Ok(Some((what, places.first().copied()))),
+            Err(Trouble::Places { what, places }) => Ok(Some(Failure { radius, what, at: places.first().copied() })),
             Err(other) => Err(other.into_error(radius)),
         }
-    };
-    let mut works = START * diagonal;
-    let mut fails = None;
-    for halving in 0.. {
-        match fits(works)? {
-            None => break,
-            Some((what, at)) if halving == halvings => {
-                let at = at.unwrap_or(DVec3::ZERO);
-                return Err(Error::DoesNotFit { what, at, radius: works, workable: None });
+    }
+
+    /// Halves `works` until it does, makes it grow until it fails unless a larger one is known to, and halves the gap.
+    fn bracket(&self, mut works: f64, mut known: Option<Failure>, halvings: u32) -> Result<Limit, Error> {
+        let diagonal = self.diagonal();
+        let mut halving = 0;
+        while let Some(Failure { radius, what, at }) = self.fails(works)? {
+            if halving == halvings {
+                return Err(Error::DoesNotFit { what, at: at.unwrap_or(DVec3::ZERO), radius, workable: None });
             }
-            Some(trouble) => {
-                fails = Some((works, trouble));
-                works *= 0.5;
+            known = Some(Failure { radius, what, at });
+            works *= 0.5;
+            halving += 1;
+        }
+        let mut failure = loop {
+            if let Some(failure) = known {
+                break failure;
+            }
+            let next = GROWTH * works;
+            if next > diagonal {
+                return Ok(Limit { radius: works, what: "nothing", at: None });
+            }
+            known = self.fails(next)?;
+            if known.is_none() {
+                works = next;
+            }
+        };
+        while failure.radius > CLOSE_ENOUGH * works {
+            let middle = (failure.radius * works).sqrt();
+            match self.fails(middle)? {
+                None => works = middle,
+                Some(found) => failure = found,
             }
         }
+        Ok(Limit { radius: works, what: failure.what, at: failure.at })
     }
-    while fails.is_none() {
-        let next = GROWTH * works;
-        if next > diagonal {
-            return Ok(Limit { radius: works, what: "nothing", at: None });
-        }
-        match fits(next)? {
-            None => works = next,
-            Some(trouble) => fails = Some((next, trouble)),
-        }
-    }
-    let (mut limit, mut trouble) = fails.unwrap_or((works, ("nothing", None)));
-    while limit > CLOSE_ENOUGH * works {
-        let middle = (limit * works).sqrt();
-        match fits(middle)? {
-            None => works = middle,
-            Some(found) => (limit, trouble) = (middle, found),
-        }
-    }
-    Ok(Limit { radius: works, what: trouble.0, at: trouble.1 })
 }

@@ -46,7 +46,7 @@ mod trouble;
 use ending::Ends;
 use fill::fill;
 use glam::DVec3;
-pub(crate) use limit::max_radius_above;
+pub(crate) use limit::rough_max_radius;
 pub use limit::{Limit, max_radius};
 use linkage::cut_linkages;
 use mends::Mends;

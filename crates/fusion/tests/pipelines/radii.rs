@@ -129,6 +129,7 @@ fn the_radii_of_a_star_are_listed_in_seconds() {
     // What is listed for an edge is what asking for it alone gives.
     for (curve, limit) in curves.iter().zip(&limits).filter(|l| l.1.is_some()).take(2) {
         let alone = BlendCurve { halfedges: curve.halfedges.clone(), closed: curve.closed };
-        assert_eq!(max_radius(&star, &[alone], &Params::new(1.0), &Watch::default()).ok(), *limit);
+        let exact = max_radius(&star, &[alone], &Params::new(1.0), &Watch::default()).unwrap().radius;
+        assert!(limit.as_ref().is_some_and(|l| (l.radius / exact - 1.0).abs() < 0.01), "{exact}, {limit:?}");
     }
 }
