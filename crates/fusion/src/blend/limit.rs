@@ -23,14 +23,15 @@ const CLOSE_ENOUGH: f64 = 1.005;
 const START: f64 = 1.0 / 64.0;
 const GROWTH: f64 = 1.5;
 /// How often a radius that fails is halved.
-const HALVINGS: u32 = 10;
+const HALVINGS: u32 = 8;
 /// Shares of a radius that works at which smaller ones are tried too, as far as they are a thousandth of the diagonal.
 const BELOW: [f64; 8] = [0.9, 0.7, 0.5, 0.35, 0.25, 0.125, 0.0625, 0.03];
 const LEAST: f64 = 1e-3;
 
 /// The end of the interval from 0 in which every radius can be blended along `curves` with [`Overlap::Error`]: radii are
 /// tried from a 64th of the curves' box downwards until one works, then upwards until one fails, and the gap is halved.
-/// Eight smaller ones are tried then; if one fails, the search goes on below it.
+/// Eight smaller ones are tried then; if one fails, the search goes on below it, unless nothing down to a thousandth of the
+/// box fits there: a ball that is too small for the mesh is no reason to refuse larger ones.
 ///
 /// # Errors
 /// [`Error::DoesNotFit`] if even the smallest fails; those without a place as [`super::blend`].
@@ -53,7 +54,13 @@ pub fn max_radius(
         Ok(None)
     };
     while let Some(failure) = below(&found)? {
-        found = search.bracket(0.5 * failure.radius, Some(failure), HALVINGS)?;
+        let first = 0.5 * failure.radius;
+        let halvings = (first / (LEAST * diagonal)).max(1.0).log2() as u32;
+        match search.bracket(first, Some(failure), halvings) {
+            Ok(smaller) => found = smaller,
+            Err(Error::DoesNotFit { .. }) => break,
+            Err(other) => return Err(other),
+        }
     }
     Ok(found)
 }

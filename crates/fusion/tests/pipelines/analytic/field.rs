@@ -4,7 +4,7 @@ use super::cases::Pair::{self, Branch, Cross, PlateCylinder, PlateSphere, Sphere
 use super::cases::{COARSE, Case, RADIUS, SMALLER};
 use super::measure::{measure, run};
 use super::{assert_local, assert_valid, row};
-use fusion::blend::Surface;
+use fusion::blend::{Overlap, Surface};
 use tri_intersect::Operation::{self, Difference, Intersection, Union};
 
 /// Within a hundredth of the radius, or within what the input's own facets make of it: a ball between them is off by up
@@ -57,4 +57,20 @@ fn equal_cylinders_are_served() {
             assert!(m.inner[0] <= 0.05 * RADIUS + m.sagitta, "{pair:?} {n}: {m:?}");
         }
     }
+}
+
+/// Where a sweep of the full ball folds, it is refused, made smaller, or trimmed: then no ball is smaller than asked for.
+#[test]
+fn a_trimmed_blend_has_the_full_radius() {
+    let case = Case::new(Branch(1.0), Union, COARSE, RADIUS);
+    assert!(run(&case, |p| p.overlap = Overlap::Error).is_err());
+    let trimmed = run(&case, |p| p.overlap = Overlap::Trim).unwrap_or_else(|e| panic!("{e}"));
+    assert_valid(&trimmed);
+    assert!(trimmed.blended.fields > 0 && trimmed.blended.shrunk.is_empty() && trimmed.blended.full_share == 1.0);
+    let m = measure(&case, &trimmed);
+    assert!(m.inner[0] <= 0.05 * RADIUS + m.sagitta, "{m:?}");
+    // Nothing is trimmed where the ball can be swept.
+    let clean = Case::new(PlateSphere, Union, COARSE, RADIUS);
+    let swept = run(&clean, |p| p.overlap = Overlap::Trim).unwrap_or_else(|e| panic!("{e}"));
+    assert!(swept.blended.fields == 0 && swept.blended.strips == 1);
 }
