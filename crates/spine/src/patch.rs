@@ -70,8 +70,7 @@ impl Patch {
                     continue;
                 }
                 let triangle = mesh.corners(next).map(|v| mesh.position(v));
-                let (mark, distance) = marks.approach(nearest[face], triangle);
-                if distance <= reach {
+                if let Some(mark) = marks.approach(nearest[face], triangle, reach) {
                     nearest[next] = mark;
                     faces.push(next);
                     queue.push_back(next);
@@ -114,26 +113,29 @@ impl Marks {
         Self { points, first_of_edge }
     }
 
-    /// A mark locally nearest to a triangle, sought from mark `start`, and its distance: by turns the triangle's point
-    /// nearest to the mark and the mark nearest to that point, since a large triangle may come near the curve far from
-    /// its middle.
-    fn approach(&self, start: u32, triangle: [DVec3; 3]) -> (u32, f64) {
-        let gap = |mark: u32| {
-            let p = self.points[mark as usize];
-            let on = closest_point_on_triangle(p, triangle).0;
-            (on, on.distance(p))
-        };
-        let mut mark = self.descend(start, (triangle[0] + triangle[1] + triangle[2]) / 3.0);
-        let mut best = gap(mark);
-        for _ in 0..64 {
-            let next = self.descend(mark, best.0);
-            let found = gap(next);
-            if next == mark || found.1 >= best.1 {
-                break;
+    /// A mark within `reach` of a triangle, sought from mark `start`: by turns the triangle's point nearest to the mark and
+    /// the mark nearest to that point. A large triangle may come near the curve far from its middle, and a needle that
+    /// leaves the curve at a small angle so slowly that the turns do not arrive there: its corners are tried too.
+    fn approach(&self, start: u32, triangle: [DVec3; 3], reach: f64) -> Option<u32> {
+        let [a, b, c] = triangle;
+        [(a + b + c) / 3.0, a, b, c].into_iter().find_map(|from| {
+            let mut mark = self.descend(start, from);
+            let mut best = f64::INFINITY;
+            for _ in 0..64 {
+                let p = self.points[mark as usize];
+                let on = closest_point_on_triangle(p, triangle).0;
+                let distance = on.distance(p);
+                if distance <= reach {
+                    return Some(mark);
+                }
+                let next = self.descend(mark, on);
+                if next == mark || distance >= best {
+                    return None;
+                }
+                (mark, best) = (next, distance);
             }
-            (mark, best) = (next, found);
-        }
-        (mark, best.1)
+            None
+        })
     }
 
     /// Walks from mark `start` to a locally nearest mark of a point, looking a few marks ahead each way.

@@ -198,3 +198,32 @@ fn a_curve_of_one_edge_runs_out_at_both_ends() {
         assert_eq!(done.strips, 1);
     }
 }
+
+/// A unit cube whose top is a fan of needles from one corner, the first of which leave an edge at a small angle.
+fn fanned_cube() -> TriMesh {
+    let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) - 0.5;
+    let mut positions: Vec<DVec3> = [0.0, 1.0]
+        .into_iter()
+        .flat_map(|z| [corner(0.0, 0.0, z), corner(1.0, 0.0, z), corner(1.0, 1.0, z), corner(0.0, 1.0, z)])
+        .collect();
+    let first = positions.len() as u32;
+    positions.extend((1..20).map(|k| corner(1.0, 0.02 * f64::from(k), 1.0)));
+    let last = positions.len() as u32;
+    let top: Vec<u32> = [4, 5].into_iter().chain(first..last).chain([6, 7]).collect();
+    let right: Vec<u32> = [1, 2, 6].into_iter().chain((first..last).rev()).chain([5]).collect();
+    let polygons: [&[u32]; 6] = [&[3, 2, 1, 0], &[0, 1, 5, 4], &right, &[2, 3, 7, 6], &[3, 0, 4, 7], &top];
+    let fan = |p: &&[u32]| (1..p.len() - 1).map(|k| [p[0], p[k], p[k + 1]].map(VertexId)).collect::<Vec<_>>();
+    TriMesh { positions, faces: polygons.iter().flat_map(fan).collect() }
+}
+
+/// Base patches left needles out that touch the curve in one corner only, and the ball leaned over their edge.
+#[test]
+fn needles_beside_an_edge_are_rolled_on() {
+    let mesh = Connected::new(fanned_cube()).unwrap();
+    for r in [0.002, 0.01, 0.1] {
+        let done = rounded(&mesh, &curves(&mesh), &Params::new(r));
+        let off = |&p: &DVec3| from_rounded_box(p, DVec3::splat(0.5), r).abs();
+        let worst = done.mesh.positions.iter().map(off).fold(0.0, f64::max);
+        assert!(worst <= 1e-9, "{worst} off with radius {r}");
+    }
+}
