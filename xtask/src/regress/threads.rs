@@ -48,7 +48,7 @@ impl Threads {
 
 /// FNV-1a over all coordinates' bits and all corners.
 fn hash(mesh: &TriMesh) -> u64 {
-    let places = mesh.positions.iter().flat_map(|p| p.to_array()).flat_map(|x| x.to_bits().to_le_bytes());
+    let places = mesh.positions.iter().flat_map(glam::DVec3::to_array).flat_map(|x| x.to_bits().to_le_bytes());
     let corners = mesh.faces.iter().flatten().flat_map(|v| v.0.to_le_bytes());
     places
         .chain(corners)

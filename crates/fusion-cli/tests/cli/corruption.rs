@@ -141,7 +141,7 @@ fn shuffled_order() {
         mesh_io::write(&Model::from(mesh.clone()), &bench.path("in.ply")).unwrap();
         let ordered = volume(verb);
         // Multiplication by a number prime to the count is a permutation.
-        let prime = [37, 41, 43, 47].into_iter().find(|p| n % p != 0).unwrap();
+        let prime = [37, 41, 43, 47].into_iter().find(|p| !n.is_multiple_of(*p)).unwrap();
         let moved = |v: usize| v * prime % n;
         let old = mesh.positions.clone();
         (0..n).for_each(|v| mesh.positions[moved(v)] = old[v]);
@@ -161,7 +161,7 @@ fn harmed_bytes() {
     for (i, verb) in VERBS.into_iter().enumerate() {
         for (j, format) in Format::ALL.into_iter().enumerate() {
             let sound = mesh_io::to_bytes(&Model::from(drum(verb)), format).unwrap();
-            let name = format!("in.{}", format);
+            let name = format!("in.{format}");
             let mut seed = (i * 7 + j) as u64;
             let mut random = |below: usize| {
                 seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
