@@ -115,7 +115,7 @@ fn attributes_that_are_not_finite_are_none() {
         glb[at..at + 4].copy_from_slice(&f32::INFINITY.to_le_bytes());
     }
     let read = read_stream(&glb, Format::Glb).unwrap();
-    assert!(read.colors.iter().flat_map(|m| m.as_slice()).flatten().all(|x| x.is_nan()));
+    assert!(read.colors.iter().flat_map(mesh_core::IdMap::as_slice).flatten().all(|x| x.is_nan()));
     for format in Format::ALL {
         let again = read_stream(&to_bytes(&read, format).unwrap(), format).unwrap();
         assert_eq!(again.mesh.face_count(), 12, "{format}");
