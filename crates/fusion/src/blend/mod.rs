@@ -248,7 +248,8 @@ fn explained(
     match refusal {
         Trouble::Places { what, places } => {
             let mut workable = None;
-            for halvings in 1..=3 {
+            // What fails in many places is no matter of a little: one try tells.
+            for halvings in if places.len() > FEW { 3 } else { 1 }..=3 {
                 let radius = params.radius * 0.5f64.powi(halvings);
                 let smaller = Params { radius, sketch: Sketch::default(), ..params.clone() };
                 match attempt(mesh, curves, &smaller, ROUNDS / 2, watch) {
