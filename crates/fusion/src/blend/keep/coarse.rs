@@ -1,4 +1,4 @@
-//! Blends made on a coarse level of a decimation hierarchy, with the finer levels' details put back ([Liu2005] §6.3).
+//! Blends made on a coarse level of a decimation hierarchy, with the finer levels' details put back (\[Liu2005\] §6.3).
 
 use super::refusal::Refusal;
 use super::{Params, blend_level};

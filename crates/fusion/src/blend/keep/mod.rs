@@ -45,7 +45,7 @@ pub struct Params {
     /// Samples along a spine before refinement.
     pub samples: u32,
     /// Most levels of a decimation hierarchy on the coarsest of which that serves the blend is made, before details are
-    /// put back ([Liu2005] §6.3); 0 blends the mesh itself.
+    /// put back (\[Liu2005\] §6.3); 0 blends the mesh itself.
     pub levels: usize,
 }
 
