@@ -167,8 +167,12 @@ impl Edges {
 
     fn is_spur<M: Adjacency>(&self, mesh: &M, chain: &[HalfedgeId], longest: usize) -> bool {
         let [Some(&first), Some(&last)] = [chain.first(), chain.last()] else { return false };
-        let ends = [mesh.tail(first), mesh.head(last)].map(|v| self.degree[v.index()]);
-        chain.len() <= longest && ends.contains(&1) && ends.iter().any(|&d| d > 2)
+        let ends = [mesh.tail(first), mesh.head(last)];
+        // A curve that leaves through an opening was cut off there; it does not peter out.
+        let frayed = |&v: &VertexId| {
+            self.degree[v.index()] == 1 && mesh.outgoing(v).is_some_and(|h| mesh.twin(h).is_some())
+        };
+        chain.len() <= longest && ends.iter().any(frayed) && ends.iter().any(|v| self.degree[v.index()] > 2)
     }
 
     fn curve<M: Adjacency + Positions>(&self, mesh: &M, halfedges: Vec<HalfedgeId>) -> FeatureCurve {
@@ -243,5 +247,15 @@ mod tests {
             assert_eq!(nearest_curve(&mesh, &found, 1.1 * 0.5 * (a + b)).map(|n| n.0), Some(i));
         }
         assert_eq!(nearest_curve(&mesh, &[], DVec3::ZERO), None);
+    }
+
+    #[test]
+    fn edges_that_end_at_an_opening_are_no_spurs() {
+        let mut mesh = shapes::cuboid(DVec3::ONE);
+        let height = |v: &VertexId| mesh.positions[v.index()].z;
+        let open = mesh.faces.iter().copied().filter(|f| f.iter().any(|v| height(v) < 0.0)).collect();
+        mesh.faces = open;
+        assert_eq!(mesh.faces.len(), 10);
+        assert_eq!(curves(&mesh, &Params::default()).len(), 8);
     }
 }

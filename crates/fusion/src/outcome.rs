@@ -20,9 +20,7 @@ pub struct Outcome {
 /// What a result is promised to be, beside free of self-intersections in what was changed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Promise {
-    /// Oriented, 2-manifold and closed.
-    Closed,
-    /// Oriented and 2-manifold, with this many boundary loops.
+    /// Oriented and 2-manifold, with this many boundary loops: closed if none.
     Openings(usize),
     /// Oriented and 2-manifold.
     Manifold,
@@ -37,7 +35,7 @@ pub(crate) fn finish(
     report: Report,
     watch: &Watch,
 ) -> Result<Outcome, Error> {
-    finish_as(Promise::Closed, parts, mesh, origins, format, report, watch)
+    finish_as(Promise::Openings(0), parts, mesh, origins, format, report, watch)
 }
 
 /// Checks a result as its format will hold it, and completes the report.

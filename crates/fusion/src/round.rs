@@ -98,10 +98,7 @@ fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch)
     report.figures.insert("curves".into(), curves.len() as f64);
     let blended = report.time("blend", || blend::blend(&mesh, &curves, how, watch))?;
     account(&blended, how, &mut report);
-    let promise = match boundary_loops(&mesh).len() {
-        0 => Promise::Closed,
-        count => Promise::Openings(count),
-    };
+    let promise = Promise::Openings(boundary_loops(&mesh).len());
     finish_as(promise, std::slice::from_ref(part), blended.mesh, blended.origins, params.format, report, watch)
 }
 

@@ -50,7 +50,6 @@ pub(crate) fn as_written(
     }
     let closed = defects.is_closed();
     let promised = match promise {
-        Promise::Closed => Some(0),
         Promise::Openings(count) => Some(count),
         Promise::Manifold => None,
     };

@@ -77,10 +77,20 @@ impl Origins {
             return parents;
         }
         for (part, stage) in (0..).zip(stages) {
+            // Most faces are far from any split edge: a bit for each vertex spares them the table.
+            let mut ends = vec![false; stage.faces.vertex_count()];
+            for v in parents.keys().filter(|key| key.0 == part).flat_map(|key| key.1) {
+                if let Some(end) = ends.get_mut(v.index()) {
+                    *end = true;
+                }
+            }
             for f in (0..stage.faces.face_count() as u32).map(FaceId) {
                 let (c, Some(&origin)) = (stage.faces.corners(f), stage.origins.faces.get(f)) else { continue };
-                for k in 0..3 {
-                    if let Some(best) = parents.get_mut(&(part, sorted([c[k], c[(k + 1) % 3]])))
+                for (a, b) in [(c[0], c[1]), (c[1], c[2]), (c[2], c[0])] {
+                    if !(ends[a.index()] && ends[b.index()]) {
+                        continue;
+                    }
+                    if let Some(best) = parents.get_mut(&(part, sorted([a, b])))
                         && matches!(best, FaceOrigin::New { .. })
                         && (!matches!(origin, FaceOrigin::New { .. }) || *best == FaceOrigin::New { stage: LOST })
                     {

@@ -5,13 +5,13 @@
 //! great circle at one radius on a ball of 1 280 triangles, error falling with the edge length. A late
 //! better value re-opens a vertex, which is what obtuse triangles need in place of their special unfolding.
 
+use crate::id_hash::IdTable;
 use crate::ids::{EdgeId, FaceId, HalfedgeId, VertexId};
 use crate::sectors::Sectors;
 use crate::surface_point::SurfacePoint;
 use crate::traits::{Adjacency, Positions};
 use std::cmp::Ordering;
-use std::collections::{BinaryHeap, HashMap};
-use std::hash::{BuildHasherDefault, Hasher};
+use std::collections::BinaryHeap;
 
 /// Where a flood starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +50,7 @@ impl Default for FloodParams {
 pub struct Flood<'a, M> {
     mesh: &'a M,
     sectors: Sectors,
-    nodes: HashMap<u32, Node, BuildHasherDefault<IdHasher>>,
+    nodes: IdTable<u32, Node>,
     /// Keys in order of first touch, so that nothing is read out in hash order.
     touched: Vec<u32>,
 }
@@ -79,7 +79,7 @@ struct Node {
 /// ```
 pub fn flood<'a, M: Adjacency + Positions>(mesh: &'a M, seeds: &[Seed], params: &FloodParams) -> Flood<'a, M> {
     let sectors = Sectors::new(mesh, &params.barriers);
-    let mut field = Flood { mesh, sectors, nodes: HashMap::default(), touched: vec![] };
+    let mut field = Flood { mesh, sectors, nodes: IdTable::default(), touched: vec![] };
     let mut front = BinaryHeap::new();
     for (i, seed) in (0..).zip(seeds) {
         for (h, distance) in starts(mesh, &field.sectors, seed) {
@@ -285,24 +285,6 @@ impl PartialEq for Entry {
 }
 
 impl Eq for Entry {}
-
-/// Spreads u32 ids over the table; ids are no attacker's choice.
-#[derive(Default)]
-struct IdHasher(u64);
-
-impl Hasher for IdHasher {
-    fn write(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.write_u32(u32::from(byte));
-        }
-    }
-    fn write_u32(&mut self, id: u32) {
-        self.0 = (self.0 ^ u64::from(id)).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(32);
-    }
-    fn finish(&self) -> u64 {
-        self.0
-    }
-}
 
 #[cfg(test)]
 mod tests {

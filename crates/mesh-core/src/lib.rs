@@ -10,7 +10,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `ids.rs`, `map.rs` | typed indices and the vectors they index |
+//! | `ids.rs`, `map.rs`, `id_hash.rs` | typed indices, the vectors they index, sets of them |
 //! | `traits.rs` | the five traits: faces, adjacency, positions, sink, edit observer |
 //! | `mesh.rs` | `TriMesh`, passive positions and faces |
 //! | `connected.rs`, `corner_table.rs`, `edge_groups.rs` | `Connected`, the one place that decides manifoldness |
@@ -40,6 +40,7 @@ mod corner_table;
 mod cotangent;
 mod edge_groups;
 mod geodesic;
+mod id_hash;
 mod ids;
 mod loops;
 pub mod map;
@@ -65,6 +66,7 @@ pub use compose::Stage;
 pub use connected::{Connected, NotManifold};
 pub use cotangent::{cotangent_weight, cotangents, mean_curvature_vectors, mixed_areas};
 pub use geodesic::{Flood, FloodParams, Seed, Source, flood};
+pub use id_hash::{IdHasher, IdSet};
 pub use ids::{EdgeId, FaceId, HalfedgeId, VertexId};
 pub use loops::boundary_loops;
 pub use map::{CornerMap, EdgeMap, FaceMap, IdMap, VertexMap};

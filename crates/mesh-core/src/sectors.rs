@@ -1,13 +1,13 @@
 //! The sides of vertices that lie on barriers.
 
+use crate::id_hash::IdSet;
 use crate::ids::{EdgeId, HalfedgeId, VertexId};
 use crate::traits::Adjacency;
-use std::collections::HashSet;
 
 /// The sides of vertices on barriers. A side is named by its first corner, clockwise.
 pub(crate) struct Sectors {
-    barriers: HashSet<EdgeId>,
-    split: HashSet<VertexId>,
+    barriers: IdSet<EdgeId>,
+    split: IdSet<VertexId>,
 }
 
 impl Sectors {

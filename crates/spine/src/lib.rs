@@ -45,8 +45,7 @@ pub use radius::{Dip, RadiusField};
 
 use glam::DVec3;
 use march::Footing;
-use mesh_core::{Adjacency, EdgeId, HalfedgeId, Positions, VertexId};
-use std::collections::HashSet;
+use mesh_core::{Adjacency, EdgeId, HalfedgeId, IdSet, Positions, VertexId};
 use std::sync::Arc;
 
 /// How the ball rolls.
@@ -286,8 +285,8 @@ pub fn roll_or_halt<M: Adjacency + Positions + Sync>(
     }
     let convexity = curve.convexity(mesh)?;
     let edges = all_curves.iter().flat_map(|c| &c.halfedges).map(|&h| mesh.edge(h));
-    let barriers: HashSet<EdgeId> = edges.chain(params.walls.iter().copied()).collect();
-    let own: HashSet<EdgeId> = curve.halfedges.iter().map(|&h| mesh.edge(h)).collect();
+    let barriers: IdSet<EdgeId> = edges.chain(params.walls.iter().copied()).collect();
+    let own: IdSet<EdgeId> = curve.halfedges.iter().map(|&h| mesh.edge(h)).collect();
     let ends = curve.ends(mesh);
     let mut alpha = params.alpha.max(wedge_alpha(mesh, curve));
     loop {
@@ -370,7 +369,7 @@ fn wedge_alpha<M: Adjacency + Positions>(mesh: &M, curve: &BlendCurve) -> f64 {
 }
 
 /// Whether a foot lies on an edge beyond which the patch was cut off.
-fn on_rim<M: Adjacency>(mesh: &M, patch: &Patch, barriers: &HashSet<EdgeId>, foot: &mesh_query::ClosestPoint) -> bool {
+fn on_rim<M: Adjacency>(mesh: &M, patch: &Patch, barriers: &IdSet<EdgeId>, foot: &mesh_query::ClosestPoint) -> bool {
     (0..3).any(|corner| {
         let h = HalfedgeId::new(foot.face, corner);
         foot.barycentric[(corner + 2) % 3] == 0.0

@@ -14,10 +14,9 @@ use crate::patch::Patch;
 use crate::radius::RadiusField;
 use crate::{Error, MAX_ALPHA};
 use glam::DVec3;
-use mesh_core::{Adjacency, EdgeId, Positions, Watch};
+use mesh_core::{Adjacency, EdgeId, IdSet, Positions, Watch};
 use moved::MovedPatch;
 use sampling::Loop;
-use std::collections::HashSet;
 use tri_intersect::{Curve, CurvePoint, intersection_curves};
 
 /// How offset patches are made and their crossing is sampled.
@@ -108,7 +107,7 @@ const MOST_SAMPLES: f64 = 1e5;
 pub(crate) struct Base<'a> {
     pub patches: &'a [Patch; 2],
     /// Edges no patch was flooded across.
-    pub barriers: &'a HashSet<EdgeId>,
+    pub barriers: &'a IdSet<EdgeId>,
     /// How far they were flooded, in radii.
     pub alpha: f64,
 }

@@ -2,9 +2,9 @@
 
 use crate::curve::BlendCurve;
 use glam::DVec3;
-use mesh_core::{Adjacency, EdgeId, FaceId, FaceMap, HalfedgeId, Positions};
+use mesh_core::{Adjacency, EdgeId, FaceId, FaceMap, HalfedgeId, IdSet, Positions};
 use mesh_query::{ClosestPoint, TriBvh, closest_point_on_triangle};
-use std::collections::{HashSet, VecDeque};
+use std::collections::VecDeque;
 
 /// One side of a blend curve.
 pub struct Patch {
@@ -40,7 +40,7 @@ impl Patch {
         mesh: &M,
         curve: &BlendCurve,
         side: Side,
-        barriers: &HashSet<EdgeId>,
+        barriers: &IdSet<EdgeId>,
         reach: f64,
         spacing: f64,
     ) -> Result<Self, mesh_query::Error> {

@@ -25,12 +25,12 @@ const GROWTH: f64 = 1.5;
 /// How often a radius that fails is halved.
 const HALVINGS: u32 = 8;
 /// Shares of a radius that works at which smaller ones are tried too, as far as they are a thousandth of the diagonal.
-const BELOW: [f64; 8] = [0.9, 0.7, 0.5, 0.35, 0.25, 0.125, 0.0625, 0.03];
+const BELOW: [f64; 6] = [0.9, 0.7, 0.5, 0.25, 0.125, 0.05];
 const LEAST: f64 = 1e-3;
 
 /// The end of the interval from 0 in which every radius can be blended along `curves` with [`Overlap::Error`]: radii are
 /// tried from a 64th of the curves' box downwards until one works, then upwards until one fails, and the gap is halved.
-/// Eight smaller ones are tried then; if one fails, the search goes on below it, unless nothing down to a thousandth of the
+/// Six smaller ones are tried then; if one fails, the search goes on below it, unless nothing down to a thousandth of the
 /// box fits there: a ball that is too small for the mesh is no reason to refuse larger ones.
 ///
 /// # Errors

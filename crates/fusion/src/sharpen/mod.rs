@@ -134,10 +134,7 @@ pub fn sharpen(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, 
         origins = made.origins.compose(&[Stage { origins: &origins, faces: &mesh }], &[&part.mesh as &dyn Faces]);
         mesh = Connected::new(made.mesh).map_err(|e| Refusal::Meets { at: e.place.unwrap_or(at) })?;
     }
-    let promise = match openings {
-        0 => Promise::Closed,
-        count => Promise::Openings(count),
-    };
+    let promise = Promise::Openings(openings);
     finish_as(promise, std::slice::from_ref(part), mesh.into_mesh(), origins, params.format, report, watch)
 }
 

@@ -5,10 +5,9 @@ use crate::patch::Patch;
 use crate::radius::RadiusField;
 use glam::DVec3;
 use mesh_core::{
-    Adjacency, Connected, EdgeId, FaceId, HalfedgeId, Positions, SurfacePoint, TriMesh, VertexId, collinear,
+    Adjacency, Connected, EdgeId, FaceId, HalfedgeId, IdSet, Positions, SurfacePoint, TriMesh, VertexId, collinear,
     corner_angle, face_normal,
 };
-use std::collections::HashSet;
 
 /// A base patch as a mesh of its own, and its offset with the same triangles.
 pub(crate) struct MovedPatch {
@@ -27,7 +26,7 @@ impl MovedPatch {
     pub fn new<M: Adjacency + Positions>(
         mesh: &M,
         patch: &Patch,
-        barriers: &HashSet<EdgeId>,
+        barriers: &IdSet<EdgeId>,
         radius: &RadiusField,
         side: f64,
         keep: OffsetKeep,
@@ -95,7 +94,7 @@ struct Fans {
 }
 
 impl Fans {
-    fn of<M: Adjacency>(mesh: &M, faces: &[FaceId], barriers: &HashSet<EdgeId>) -> Self {
+    fn of<M: Adjacency>(mesh: &M, faces: &[FaceId], barriers: &IdSet<EdgeId>) -> Self {
         let place = |h: HalfedgeId| faces.binary_search(&h.face()).ok().map(|i| 3 * i + h.corner());
         // The halfedge in the set that is the other side of h, unless a barrier is between.
         let across = |h: HalfedgeId| {
