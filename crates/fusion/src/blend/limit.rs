@@ -23,7 +23,7 @@ const CLOSE_ENOUGH: f64 = 1.005;
 const START: f64 = 1.0 / 64.0;
 const GROWTH: f64 = 1.5;
 /// How often a radius that fails is halved.
-const HALVINGS: u32 = 8;
+const HALVINGS: u32 = 5;
 /// Shares of a radius that works at which smaller ones are tried too, as far as they are a thousandth of the diagonal.
 const BELOW: [f64; 6] = [0.9, 0.7, 0.5, 0.25, 0.125, 0.05];
 const LEAST: f64 = 1e-3;
