@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use mesh_core::{Adjacency, Faces, HalfedgeId, Positions, VertexId, dihedral_angle};
+use rayon::prelude::*;
 
 /// Which edges are features.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +59,7 @@ impl FeatureCurve {
 /// All feature curves, in order of their lowest halfedge. O(n) for n faces.
 ///
 /// Curves end at junctions (vertices with one or more than two feature edges) and where convexity changes.
-pub fn feature_curves<M: Adjacency + Positions>(mesh: &M, params: &Params) -> Vec<FeatureCurve> {
+pub fn feature_curves<M: Adjacency + Positions + Sync>(mesh: &M, params: &Params) -> Vec<FeatureCurve> {
     let mut edges = Edges::sharp(mesh, params.angle);
     if params.spur > 0 {
         let spurs = edges.chains(mesh).into_iter().filter(|c| edges.is_spur(mesh, c, params.spur));
@@ -90,23 +91,32 @@ pub fn nearest_curve<M: Adjacency + Positions>(
 
 /// The edges that are features, both halfedges marked, and how many there are at each vertex.
 struct Edges {
+    /// Both halfedges of every feature, in order.
+    sharp: Vec<HalfedgeId>,
     /// Signed dihedral angle in degrees, positive where convex; 0 where the edge is no feature.
     turn: Vec<f64>,
     degree: Vec<u32>,
 }
 
 impl Edges {
-    fn sharp<M: Adjacency + Positions>(mesh: &M, angle: f64) -> Self {
-        let mut edges = Self { turn: vec![0.0; 3 * mesh.face_count()], degree: vec![0; mesh.vertex_count()] };
-        for h in (0..edges.turn.len()).map(HalfedgeId::from) {
-            let Some(twin) = mesh.twin(h).filter(|&t| h < t) else { continue };
-            let turn = dihedral_angle(mesh, h).map_or(0.0, f64::to_degrees);
-            if turn.abs() >= angle {
-                edges.turn[h.index()] = turn;
-                edges.turn[twin.index()] = turn;
-                edges.degree[mesh.tail(h).index()] += 1;
-                edges.degree[mesh.head(h).index()] += 1;
-            }
+    fn sharp<M: Adjacency + Positions + Sync>(mesh: &M, angle: f64) -> Self {
+        let cosine = angle.to_radians().cos().max(0.0);
+        let turn = |low: HalfedgeId| {
+            let twin = mesh.twin(low).filter(|&twin| low < twin && !is_flatter(mesh, [low, twin], cosine))?;
+            let turn = dihedral_angle(mesh, low)?.to_degrees();
+            (turn.abs() >= angle).then_some([(low, turn), (twin, turn)])
+        };
+        let all = (0..3 * mesh.face_count()).into_par_iter().map(HalfedgeId::from);
+        let mut found: Vec<_> = all.filter_map(turn).flatten_iter().collect();
+        found.sort_unstable_by_key(|f| f.0);
+        let mut edges = Self {
+            sharp: found.iter().map(|f| f.0).collect(),
+            turn: vec![0.0; 3 * mesh.face_count()],
+            degree: vec![0; mesh.vertex_count()],
+        };
+        for (h, turn) in found {
+            edges.turn[h.index()] = turn;
+            edges.degree[mesh.tail(h).index()] += 1;
         }
         edges
     }
@@ -132,7 +142,7 @@ impl Edges {
     fn chains<M: Adjacency>(&self, mesh: &M) -> Vec<Vec<HalfedgeId>> {
         let mut used = vec![false; self.turn.len()];
         let mut chains = vec![];
-        for start in (0..self.turn.len()).map(HalfedgeId::from) {
+        for &start in &self.sharp {
             if self.turn[start.index()] == 0.0 || used[start.index()] {
                 continue;
             }
@@ -187,6 +197,18 @@ impl Edges {
             halfedges,
         }
     }
+}
+
+/// Whether the turn between two faces surely has a cosine above `cosine`, at the price of two cross products: nearly all
+/// edges of a scan do. Where rounding could decide, no.
+fn is_flatter<M: Faces + Positions>(mesh: &M, sides: [HalfedgeId; 2], cosine: f64) -> bool {
+    let [m, n] = sides.map(|h| {
+        let [a, b, c] = mesh.corners(h.face()).map(|v| mesh.position(v));
+        (b - a).cross(c - a)
+    });
+    let (product, squares) = (m.dot(n), m.length_squared() * n.length_squared());
+    let least = cosine + 1e-6;
+    product > 0.0 && squares.is_normal() && product * product > least * least * squares
 }
 
 #[cfg(test)]

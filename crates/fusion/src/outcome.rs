@@ -86,6 +86,7 @@ pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Re
     report.figures.insert("radius".into(), params.radius);
     *report.figures.entry("strips".into()).or_default() += blended.strips as f64;
     *report.figures.entry("fields".into()).or_default() += blended.fields as f64;
+    *report.figures.entry("bridged".into()).or_default() += blended.bridged as f64;
     *report.figures.entry("corners".into()).or_default() += blended.corners as f64;
     let smallest = blended.shrunk.iter().map(|s| s.1).fold(params.radius, f64::min);
     for (name, value) in [("full_share", blended.full_share), ("smallest_radius", smallest)] {
@@ -136,6 +137,7 @@ mod tests {
             fields: 1,
             corners: 0,
             residual: 1e-12,
+            bridged: 2,
             shrunk: shrunk.to_vec(),
             fallbacks: vec![],
             run_outs: vec![DVec3::ZERO],

@@ -50,6 +50,9 @@ const FULL_TURN: f64 = 40.0;
 /// # Errors
 /// [`Error::NoCurve`] with the place where picks cannot be joined.
 pub(crate) fn trace(mesh: &Connected<TriMesh>, picked: &[Picked]) -> Result<Vec<BlendCurve>, Error> {
+    if picked.is_empty() {
+        return Ok(vec![]);
+    }
     let bits = |p: DVec3| p.to_array().map(|x| (x + 0.0).to_bits());
     let exact: HashMap<_, _> =
         (0..mesh.vertex_count() as u32).rev().map(VertexId).map(|v| (bits(mesh.position(v)), v)).collect();

@@ -5,6 +5,7 @@ use crate::{Error, Validity};
 use glam::DVec3;
 use mesh_core::{Connected, FaceId, FaceOrigin, Faces, NotManifold, Origins, Watch, boundary_loops, validate};
 use mesh_io::{Format, Model};
+use rayon::prelude::*;
 use tri_intersect::self_intersections_among;
 
 /// A result that is not sound.
@@ -43,24 +44,18 @@ pub(crate) fn as_written(
     let rounded = mesh_io::as_written(model, format);
     let (shape, format) = rounded.as_ref().map_or((mesh, None), |r| (r, Some(format)));
     let invalid = |reason: String, at: Option<DVec3>| Err(Invalid { reason, at, format }.into());
-    let defects = validate(shape);
-    if !defects.is_manifold() || !defects.non_finite.is_empty() {
-        let at = Connected::new(shape).err().and_then(|e| e.place);
-        return invalid(defects.to_string().replace('\n', ";"), at);
-    }
-    let closed = defects.is_closed();
-    let promised = match promise {
-        Promise::Openings(count) => Some(count),
-        Promise::Manifold => None,
+    let connected = match Connected::new(shape) {
+        Ok(connected) if shape.positions.par_iter().all(|p| p.is_finite()) => connected,
+        fault => return invalid(validate(shape).to_string().replace('\n', ";"), fault.err().and_then(|e| e.place)),
     };
-    if let Some(promised) = promised.filter(|&p| p > 0 || !closed) {
-        let loops = boundary_loops(&Connected::new(shape).map_err(Invalid::from)?);
-        if loops.len() != promised {
-            let at = loops.last().and_then(|l| l.first()).map(|h| shape.triangle(h.face())[h.corner()]);
-            let reason = format!("it has {} boundary loops instead of {promised}", loops.len());
-            return invalid(reason, at);
-        }
+    let loops = boundary_loops(&connected);
+    if let Promise::Openings(promised) = promise
+        && loops.len() != promised
+    {
+        let at = loops.last().and_then(|l| l.first()).map(|h| shape.triangle(h.face())[h.corner()]);
+        return invalid(format!("it has {} boundary loops instead of {promised}", loops.len()), at);
     }
+    let closed = loops.is_empty();
     let moved = |f: FaceId| rounded.as_ref().is_some_and(|r| r.triangle(f) != mesh.triangle(f));
     let changed: Vec<FaceId> =
         shape.face_ids().filter(|&f| !matches!(origins.faces[f], FaceOrigin::Input { .. }) || moved(f)).collect();

@@ -60,7 +60,14 @@ pub(crate) struct Fairing<'a> {
     pub softenings: &'a [Softening],
     /// Whether the last ball is next to the first.
     pub closed: bool,
+    /// The ends of an open curve and the ways out of it. Beyond them lies other surface: the kernel narrows towards them.
+    pub ends: &'a [(DVec3, DVec3)],
+    /// How far from an end a ball can be that belongs to it, in model units.
+    pub reach: f64,
 }
+
+/// Kernels narrow so that an end is this many standard deviations away.
+const CLEAR: f64 = 3.0;
 
 /// Fills jumps, smooths, projects. Also gives the largest residual of the balls seated on the way.
 pub(crate) fn fair<M: Adjacency + Positions + Sync>(
@@ -68,7 +75,7 @@ pub(crate) fn fair<M: Adjacency + Positions + Sync>(
     patches: &[Patch; 2],
     radius: &RadiusField,
     contacts: &[Contact],
-    Fairing { fairness, gaps, softenings, closed }: Fairing<'_>,
+    Fairing { fairness, gaps, softenings, closed, ends, reach }: Fairing<'_>,
 ) -> (Vec<Sample>, f64) {
     let (raw, residual) = fill_jumps(mesh, patches, radius, contacts, closed, gaps);
     let metric = Metric::of(&raw, closed);
@@ -86,8 +93,12 @@ pub(crate) fn fair<M: Adjacency + Positions + Sync>(
             if extra > 0.0 {
                 sample.center = metric.mean(&centers, i, extra.min(sample.radius));
             }
+            let room = |(at, out): &(DVec3, DVec3)| {
+                (raw[i].center.distance(*at) < reach).then(|| (*at - raw[i].center).dot(*out).max(0.0) / CLEAR)
+            };
+            let widest = ends.iter().filter_map(room).fold(f64::INFINITY, f64::min);
             for side in 0..2 {
-                let sigma = sigmas[side].min(0.5 * sample.radius) + extra.min(sample.radius);
+                let sigma = (sigmas[side].min(0.5 * sample.radius) + extra.min(sample.radius)).min(widest);
                 if sigma <= 0.0 {
                     continue;
                 }

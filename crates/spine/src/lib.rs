@@ -65,6 +65,8 @@ pub struct Params {
     /// Standard deviation of the kernel that fairs each linkage, in mean lengths of the facets it crosses. It is never
     /// taken beyond half the radius, and is zero on planes and across creases.
     pub fairness: f64,
+    /// Longest gap that is bridged where profiles fall behind their predecessors, in radii; 0 leaves folds as they are.
+    pub bridge: f64,
     /// Where the linkages are smoothed more.
     pub softenings: Vec<Softening>,
     /// What finds the spine.
@@ -94,6 +96,7 @@ impl Params {
             longest: 0.0,
             sagitta: 1e-3,
             fairness: 0.6,
+            bridge: 3.0,
             softenings: Vec::new(),
             solver: Solver::Contact,
             walls: Vec::new(),
@@ -114,6 +117,8 @@ pub struct Rail {
     /// Largest | distance from a traced centre to a patch − radius |, in model units; at most 1e-9 of the radius from
     /// [`Solver::Contact`].
     pub residual: f64,
+    /// How many balls stood where the sweep folds, and gave way to a bridge.
+    pub bridged: usize,
     /// Reach of the base patches that was needed, as a multiple of the radius.
     pub alpha: f64,
     /// The left and the right base patch.
@@ -340,12 +345,21 @@ pub fn roll_or_halt<M: Adjacency + Positions + Sync>(
             return Err(Box::new(Halt { error, patches: Some(Arc::new(patches)), balls: vec![only.center] }));
         }
         let gaps = [1.5 * params.step, if params.longest > params.step { params.longest } else { 0.0 }];
-        let fairing = fair::Fairing { fairness: params.fairness, gaps, softenings: &params.softenings, closed };
+        let fairing = fair::Fairing {
+            fairness: params.fairness,
+            gaps,
+            softenings: &params.softenings,
+            closed,
+            ends: &ends,
+            reach: 3.0 * alpha * radius.base,
+        };
         let (samples, filled) = fair::fair(mesh, &patches, radius, &contacts, fairing);
-        let samples = regress::regress(&samples, closed, convexity, 3.0 * radius.base);
+        let fair = samples.len();
+        let samples = regress::regress(&samples, closed, convexity, params.bridge * radius.base);
+        let bridged = fair - samples.len();
         let samples = fair::fill_gaps(mesh, &patches, &samples, closed, gaps);
         let residual = contacts.iter().map(|c| c.residual).fold(filled, f64::max);
-        return Ok(Rail { samples, closed, convexity, residual, alpha, patches: Arc::new(patches) });
+        return Ok(Rail { samples, closed, convexity, residual, bridged, alpha, patches: Arc::new(patches) });
     }
 }
 

@@ -30,7 +30,7 @@ pub(crate) fn blend(
         let chosen: Vec<BlendCurve> = so_far.curves(|i| !by_field[i])?;
         match attempt(mesh, &chosen, params, ROUNDS, watch) {
             Ok(swept) => {
-                so_far.add(swept, |i| !by_field[i])?;
+                so_far.add(swept, |i| !by_field[i]);
                 break;
             }
             Err(Trouble::Cancelled(c)) => return Err(c.into()),
@@ -64,15 +64,16 @@ fn add_fields(so_far: &mut SoFar<'_>, by_field: &[bool], params: &Params, watch:
     let (mesh, curves) = (so_far.input, so_far.all);
     for convexity in [Convexity::Concave, Convexity::Convex] {
         let own = |i: usize| by_field[i] && curves[i].convexity(mesh).unwrap_or(Convexity::Concave) == convexity;
-        let chosen = so_far.curves(own)?;
-        if chosen.is_empty() {
+        if !(0..curves.len()).any(own) {
             continue;
         }
+        so_far.connect()?;
+        let chosen = so_far.curves(own)?;
         let made = match &so_far.mesh {
             Some(changed) => field::blend(changed, &chosen, convexity, params, watch),
             None => field::blend(mesh, &chosen, convexity, params, watch),
         };
-        so_far.add(made?, own)?;
+        so_far.add(made?, own);
     }
     Ok(())
 }
@@ -129,7 +130,7 @@ fn hand_over(
 struct SoFar<'a> {
     input: &'a Connected<TriMesh>,
     all: &'a [BlendCurve],
-    /// The present mesh; `None` while it is the input.
+    /// The present mesh; `None` while it is the input, or until [`SoFar::connect`].
     mesh: Option<Connected<TriMesh>>,
     blended: Blended,
     /// Length of the curves blended so far.
@@ -146,6 +147,7 @@ impl<'a> SoFar<'a> {
             fields: 0,
             corners: 0,
             residual: 0.0,
+            bridged: 0,
             shrunk: vec![],
             fallbacks: vec![],
             run_outs: vec![],
@@ -153,6 +155,14 @@ impl<'a> SoFar<'a> {
             full_share: 1.0,
         };
         Self { input, all, mesh: None, blended, length: 0.0 }
+    }
+
+    /// Makes ready for more curves to be blended.
+    fn connect(&mut self) -> Result<(), Error> {
+        if self.mesh.is_none() && !self.blended.mesh.faces.is_empty() {
+            self.mesh = Some(Connected::new(self.blended.mesh.clone())?);
+        }
+        Ok(())
     }
 
     /// Some of the curves, as curves of the present mesh.
@@ -180,31 +190,31 @@ impl<'a> SoFar<'a> {
     }
 
     /// Takes over what became of the present mesh, and the account of it.
-    fn add(&mut self, made: Blended, chosen: impl Fn(usize) -> bool) -> Result<(), Error> {
+    fn add(&mut self, made: Blended, chosen: impl Fn(usize) -> bool) {
         let own: f64 = (0..self.all.len()).filter(|&i| chosen(i)).map(|i| self.all[i].length(self.input)).sum();
         let so_far = &mut self.blended;
-        so_far.origins = match &self.mesh {
+        let before = self.mesh.take();
+        so_far.origins = match &before {
             Some(before) => {
                 let stage = Stage { origins: &so_far.origins, faces: before };
                 made.origins.compose(&[stage], &[self.input as &dyn Faces])
             }
             None => made.origins,
         };
-        if self.mesh.is_none() {
+        if before.is_none() {
             so_far.first_blend_face = made.first_blend_face;
         }
         so_far.strips += made.strips;
         so_far.fields += made.fields;
         so_far.corners += made.corners;
         so_far.residual = so_far.residual.max(made.residual);
+        so_far.bridged += made.bridged;
         so_far.shrunk.extend(made.shrunk);
         so_far.run_outs.extend(made.run_outs);
         so_far.levels = so_far.levels.max(made.levels);
         so_far.full_share =
             (so_far.full_share * self.length + made.full_share * own) / (self.length + own).max(f64::MIN_POSITIVE);
         self.length += own;
-        so_far.mesh.clone_from(&made.mesh);
-        self.mesh = Some(Connected::new(made.mesh)?);
-        Ok(())
+        so_far.mesh = made.mesh;
     }
 }

@@ -63,6 +63,7 @@ pub(crate) fn set_back(
         if let Some((center, feet)) = seat_in_corner(mesh, &sides, guess, radius)
             && (0..k).all(|i| feet[i].point.distance(found[i].place) < 0.5 * radius)
         {
+            let feet: Vec<_> = (0..k).map(|i| fair_foot(mesh, sides[i], feet[i], found[i].place, radius)).collect();
             let cuts = (0..k)
                 .map(|i| {
                     let mut own = [feet[i]; 2];
@@ -131,6 +132,19 @@ pub(crate) fn join(
         joints.push(inner.collect());
     }
     Some(Corner { darts: node.darts.clone(), ball: setbacks.ball, joints })
+}
+
+/// Where the linkages on a side end that a corner's ball touches at `foot` and that cross at `crossing`. Between facets a
+/// ball touches several, and the foot on either is behind the linkage on the other; fair linkages cross between them.
+fn fair_foot(
+    mesh: &Connected<TriMesh>,
+    side: &Patch,
+    foot: ClosestPoint,
+    crossing: DVec3,
+    radius: f64,
+) -> ClosestPoint {
+    let fair = side.closest(mesh, crossing);
+    fair.filter(|fair| fair.point.distance(foot.point) > 1e-3 * radius).unwrap_or(foot)
 }
 
 /// Where two linkages on one side cross.

@@ -3,6 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `mod.rs` | the stages, and the loop that makes the ball smaller where it does not fit |
+//! | `vicinity.rs` | the part of a large mesh that the blend is made on |
 //! | `auto.rs` | which curves are swept and which are blended as a field |
 //! | `limit.rs` | the largest radius that fits |
 //! | `radii.rs` | how the radius varies along a curve and between its sides |
@@ -42,6 +43,7 @@ mod sketch;
 mod stretch;
 mod strip;
 mod trouble;
+mod vicinity;
 
 use ending::Ends;
 use fill::fill;
@@ -81,6 +83,8 @@ pub struct Params {
     pub solver: Solver,
     /// Least reach of the base patches, as a multiple of the radius; see [`spine::Params::alpha`].
     pub alpha: f64,
+    /// Longest gap that is bridged where the sweep folds, in radii; see [`spine::Params::bridge`].
+    pub bridge: f64,
     /// Largest sagitta of the blend's chords across, as a share of the radius.
     pub tolerance: f64,
     /// How far linkage vertices may be moved to spare slivers, as a share of the radius, in [0, 0.02]. A point moved by
@@ -131,6 +135,7 @@ impl Params {
             overlap: Overlap::default(),
             solver: Solver::Contact,
             alpha: 1.75,
+            bridge: 3.0,
             tolerance: 0.005,
             snap: 2e-4,
             surface: Surface::default(),
@@ -156,6 +161,8 @@ pub struct Blended {
     pub corners: usize,
     /// Largest | distance of a ball's centre to a base patch − radius | over the radius.
     pub residual: f64,
+    /// How many balls stood where the sweep folds, and gave way to bridges.
+    pub bridged: usize,
     /// Where the ball was made smaller: place, and the radius there.
     pub shrunk: Vec<(DVec3, f64)>,
     /// Where sweeping failed and a field took its place: place, and what failed there.
@@ -230,6 +237,23 @@ pub fn blend(
     if let Surface::Keep(how) = &params.surface {
         return keep::blend(mesh, curves, params, how, watch);
     }
+    if let Some(near) = vicinity::vicinity(mesh, curves, params) {
+        match blend_whole(&near.mesh, &near.curves, params, watch) {
+            Ok(blended) if near.holds(&blended) => return Ok(near.put_back(blended)),
+            Err(Error::Cancelled(c)) => return Err(c.into()),
+            // It may be the rest of the mesh that was wanted.
+            Ok(_) | Err(_) => {}
+        }
+    }
+    blend_whole(mesh, curves, params, watch)
+}
+
+fn blend_whole(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &Params,
+    watch: &Watch,
+) -> Result<Blended, Error> {
     if params.surface == Surface::Stitch {
         return attempt(mesh, curves, params, ROUNDS, watch)
             .or_else(|refusal| explained(mesh, curves, params, refusal, watch));
@@ -396,6 +420,7 @@ fn assemble(
         fields: 0,
         corners: layout.corners.len(),
         residual,
+        bridged: rails.iter().flatten().map(|r| r.bridged).sum(),
         shrunk: Vec::new(),
         fallbacks: Vec::new(),
         run_outs: network.run_outs().map(|v| mesh.position(v)).collect(),

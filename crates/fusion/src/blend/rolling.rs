@@ -48,6 +48,7 @@ pub(super) fn roll_missing(
         radius: running_out(mesh, curves, network, curve, mends.field(curve)),
         walls: network.walls(mesh, curve),
         alpha: params.alpha,
+        bridge: params.bridge,
         solver: params.solver,
         step,
         longest: longest_stride(mesh, &curves[curve], params.radius).max(step),

@@ -9,5 +9,6 @@ mod keep;
 mod placement;
 mod radii;
 mod scissors;
+mod self_crossing;
 mod sharpen;
 mod silhouettes;

@@ -255,6 +255,7 @@ fn attempt(
         fields: back.len(),
         corners: 0,
         residual: 0.0,
+        bridged: 0,
         shrunk: vec![],
         fallbacks: vec![],
         run_outs: vec![],

@@ -121,6 +121,7 @@ fn blend_level(
         fields: 0,
         corners: 0,
         residual,
+        bridged: 0,
         shrunk: Vec::new(),
         fallbacks: Vec::new(),
         run_outs: Vec::new(),
