@@ -38,6 +38,7 @@
 //! | `error.rs` | what cannot be taken or given, and where |
 
 mod cholesky;
+mod coherence;
 mod error;
 mod fan;
 mod jacobi;
@@ -48,6 +49,7 @@ mod reconstruct;
 mod rectangle;
 mod relief;
 mod roughness;
+mod spectrum;
 mod structured;
 mod transfer;
 mod tree;

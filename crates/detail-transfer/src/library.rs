@@ -39,7 +39,15 @@ pub(crate) struct Match {
 }
 
 impl Match {
-    const NONE: Self = Self { entry: u32::MAX, turn: 0, distance: f32::INFINITY };
+    /// What is to be improved on: nothing, at a distance of `limit`.
+    fn none(limit: f32) -> Self {
+        // Greater than any entry, though not any turn of a missing one: a fan at the very limit counts as found.
+        Self { entry: u32::MAX, turn: 0, distance: limit }
+    }
+
+    fn found(self) -> Option<Self> {
+        (self.entry != u32::MAX).then_some(self)
+    }
 
     /// The nearer one; ties go to the lower entry, then to the lesser turn.
     fn better(self, other: Self) -> Self {
@@ -88,7 +96,7 @@ impl Library {
 
     /// The distance of a query to a turned fan, if it is not above `limit`.
     #[inline]
-    fn distance(&self, q: &Query, entry: u32, turn: u8, limit: f32) -> Option<f32> {
+    pub fn distance(&self, q: &Query, entry: u32, turn: u8, limit: f32) -> Option<f32> {
         let start = usize::from(turn) * BRANCH;
         let fan = &self.fans[entry as usize][start..start + NUMBERS];
         let mut sum = 0.0;
@@ -113,21 +121,21 @@ impl Library {
 
     /// The distance of a query to one fan, least over the turns.
     pub fn nearest_turn(&self, q: &Query, entry: u32) -> f32 {
-        (0..BRANCHES as u8).fold(Match::NONE, |best, turn| self.consider(q, best, entry, turn)).distance
+        (0..BRANCHES as u8).fold(Match::none(f32::INFINITY), |best, turn| self.consider(q, best, entry, turn)).distance
     }
 
-    /// The most similar fan, found by looking at all. O(n), parallel.
-    pub fn exhaustive(&self, q: &Query) -> Match {
+    /// The most similar fan that is nearer than `limit`, found by looking at all. O(n), parallel.
+    pub fn exhaustive(&self, q: &Query, limit: f32) -> Option<Match> {
         let entries = (0..self.fans.len() as u32).into_par_iter().with_min_len(1024);
         let one = |best: Match, entry: u32| (0..BRANCHES as u8).fold(best, |b, turn| self.consider(q, b, entry, turn));
-        entries.fold(|| Match::NONE, one).reduce(|| Match::NONE, Match::better)
+        entries.fold(|| Match::none(limit), one).reduce(|| Match::none(limit), Match::better).found()
     }
 
-    /// The same, by the index. `hints` are likely candidates; they make it faster, not different.
-    pub fn search(&self, q: &Query, hints: impl IntoIterator<Item = (u32, u8)>) -> Match {
+    /// The same, by the index.
+    pub fn search(&self, q: &Query, limit: f32) -> Option<Match> {
         let (first, length) = q.run();
-        let Some((run, tree)) = self.tree(length) else { return self.exhaustive(q) };
-        let mut best = hints.into_iter().fold(Match::NONE, |b, (entry, turn)| self.consider(q, b, entry, turn));
+        let Some((run, tree)) = self.tree(length) else { return self.exhaustive(q, limit) };
+        let mut best = Match::none(limit);
         let front: Vec<f32> = (0..run * OUTER)
             .map(|i| q.values[((first + i / OUTER) * BRANCH + BRANCH - OUTER + i % OUTER) % NUMBERS])
             .collect();
@@ -137,6 +145,6 @@ impl Library {
             best = self.consider(q, best, entry, turn as u8);
             best.distance
         });
-        best
+        best.found()
     }
 }

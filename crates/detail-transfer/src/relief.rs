@@ -25,11 +25,17 @@ impl BaseParams {
         Self { wavelength, most_folded: 0.02 }
     }
 
-    /// Where the offset takes over from the bend as the wavelength grows, in model units.
-    pub(crate) fn anchor(&self) -> f64 {
+    /// The length over which a wave turns by one radian.
+    fn radius(&self) -> f64 {
         self.wavelength / TAU
     }
 }
+
+/// Implicit steps of a round, rounds, and the length of a step in squared wavelengths over (2π)², so that half of a wave of the very
+/// wavelength is base: 1 − (1 − (1 + t)⁻³)⁴ = ½.
+const STEPS: usize = 3;
+const ROUNDS: usize = 4;
+const STEP: f64 = 0.846;
 
 /// How far around a region its base surface is found, in wavelengths: the rim of the patch, where the base is held to the
 /// surface, is felt no farther.
@@ -74,7 +80,7 @@ impl Frame {
     }
 
     /// The frame turned least so that its normal becomes `normal`.
-    fn carried(&self, normal: DVec3) -> Self {
+    pub(crate) fn carried(&self, normal: DVec3) -> Self {
         let axis = self.normal.cross(normal);
         let turned = self.tangent
             + axis.cross(self.tangent)
@@ -101,6 +107,7 @@ pub struct Relief {
     /// The surface minus its base, in world coordinates.
     offsets: Vec<DVec3>,
     details: Vec<Detail>,
+    wavelength: f64,
     anchor: f64,
 }
 
@@ -141,14 +148,18 @@ impl Relief {
         let at = surface[0];
         let smooth = {
             let operator = Operator::new(&own);
-            let time = 0.5 * params.anchor() * params.anchor();
+            let time = STEP * params.radius() * params.radius();
             let flow = Diffusion::new(&operator, &rim, time).ok_or(Error::Singular { at })?;
-            let twice = |x: &[DVec3]| flow.step(&flow.step(x));
-            let once = twice(surface);
-            watch.step("base", 0.5)?;
-            let taken: Vec<DVec3> = surface.iter().zip(&once).map(|(p, s)| *p - *s).collect();
-            let back = twice(&taken);
-            once.iter().zip(back).map(|(s, b)| *s + b).collect::<Vec<_>>()
+            let mut smooth = vec![DVec3::ZERO; surface.len()];
+            for round in 0..ROUNDS {
+                watch.step("base", round as f64 / ROUNDS as f64)?;
+                let mut taken: Vec<DVec3> = surface.iter().zip(&smooth).map(|(p, s)| *p - *s).collect();
+                for _ in 0..STEPS {
+                    taken = flow.step(&taken);
+                }
+                smooth.iter_mut().zip(taken).for_each(|(s, t)| *s += t);
+            }
+            smooth
         };
         let offsets: Vec<DVec3> = surface.iter().zip(&smooth).map(|(p, s)| *p - *s).collect();
         let base = TriMesh { positions: smooth, faces: own.into_mesh().faces };
@@ -164,8 +175,8 @@ impl Relief {
             return Err(Error::Singular { at: base.position(VertexId::from(i)) });
         }
         watch.step("base", 1.0)?;
-        let anchor = params.anchor();
-        Ok(Self { base, vertices, faces, inside, rim, operator, frames, offsets, details, anchor })
+        let anchor = params.radius();
+        Ok(Self { base, vertices, faces, inside, rim, operator, frames, offsets, details, wavelength, anchor })
     }
 
     /// The base surface of the patch, with numbers of its own.
@@ -241,11 +252,34 @@ impl Relief {
         &self.rim
     }
 
-    pub(crate) fn anchor(&self) -> f64 {
+    pub(crate) fn wavelength(&self) -> f64 {
+        self.wavelength
+    }
+
+    /// The length over which bend and offset weigh the same, in model units: a radian of the wavelength, if [`Relief::weigh`] did not set it.
+    pub fn anchor(&self) -> f64 {
         self.anchor
     }
 
-    /// What details are compared by: bend, and offset where the wavelength is long. In 1/model unit.
+    /// Weighs bends and offsets as errors of details like those of `sources` deserve, which is by their variances: sets [`Relief::anchor`] to the fourth root of
+    /// the offsets' mean square over the bends'.
+    pub fn weigh(&mut self, sources: &[(&Self, Vec<bool>)]) {
+        let mut squares = [0.0; 2];
+        for (relief, excluded) in sources {
+            for v in relief.region_vertices(excluded) {
+                let d = relief.details[v as usize];
+                let area = relief.operator.area(v as usize);
+                squares[0] += area * d.offset.length_squared();
+                squares[1] += area * d.bend.length_squared();
+            }
+        }
+        let length = (squares[0] / squares[1]).sqrt().sqrt();
+        if length > 0.0 && length < self.anchor {
+            self.anchor = length;
+        }
+    }
+
+    /// What details are compared by: bend, and offset where waves are long. In 1/model unit.
     pub(crate) fn signal(&self, d: &Detail) -> DVec3 {
         d.bend + d.offset / (self.anchor * self.anchor)
     }

@@ -135,7 +135,6 @@ struct Model {
     plane: Rectangle,
     /// Details in the plane's coordinates; none where they may not be used.
     details: Vec<Option<Detail>>,
-    anchor: f64,
 }
 
 impl Model {
@@ -144,7 +143,7 @@ impl Model {
         relief.region_vertices(excluded).for_each(|v| usable[v as usize] = true);
         let one = |(k, &v): (usize, &u32)| usable[v as usize].then(|| plane.to_plane(k, &relief.details()[v as usize]));
         let details = plane.vertices.iter().enumerate().map(one).collect();
-        Self { plane, details, anchor: relief.anchor() }
+        Self { plane, details }
     }
 
     fn at(&self, place: DVec2) -> Option<Detail> {
@@ -155,10 +154,6 @@ impl Model {
             sum = Detail { bend: sum.bend + d.bend, offset: sum.offset + d.offset };
         }
         Some(sum)
-    }
-
-    fn signal(&self, d: &Detail) -> DVec3 {
-        d.bend + d.offset / (self.anchor * self.anchor)
     }
 }
 
@@ -211,7 +206,7 @@ impl State<'_> {
             let (mut squares, mut own, mut count) = (0.0, 0.0, 0usize);
             for (place, signal) in &known {
                 let Some(d) = model.at(*place + shift) else { continue };
-                squares += model.signal(&d).distance_squared(*signal);
+                squares += self.target.signal(&d).distance_squared(*signal);
                 own += signal.length_squared();
                 count += 1;
             }

@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::reconstruct::Reconstruction;
 use crate::relief::{BaseParams, Detail, Relief};
+use crate::spectrum::match_bands;
 use crate::structured::{Banded, Ribbon, fill_structured};
 use crate::unstructured::{Filled, Search, fill_unstructured};
 use glam::DVec3;
@@ -87,6 +88,8 @@ pub struct Transferred {
     pub filled: Filled,
     /// What was found along the curve.
     pub banded: Option<Banded>,
+    /// By how much the detail put together was too weak or strong at waves up to an eighth, a quarter, a half and the whole of the wavelength: what it was multiplied by.
+    pub gains: [f64; 4],
     /// The wavelength used, in model units.
     pub wavelength: f64,
     /// The length of fans, in model units.
@@ -132,7 +135,7 @@ pub fn transfer(
             warnings.push(Warning::Folds { source_index, share, at });
         }
     }
-    let goal = Relief::encode_as("target", mesh, target, &base, reach, watch)?;
+    let mut goal = Relief::encode_as("target", mesh, target, &base, reach, watch)?;
     let own = mean_edge(mesh, target);
     for (source_index, e) in exemplars.iter().enumerate() {
         let source_edge = mean_edge(e.mesh, e.inside);
@@ -156,6 +159,7 @@ pub fn transfer(
     let excluded: Vec<Vec<bool>> = exemplars.iter().zip(&reliefs).map(excluded).collect();
     let source_vertices = reliefs.iter().zip(&excluded).map(|(r, e)| r.region_vertices(e).count()).sum();
     let sources: Vec<(&Relief, Vec<bool>)> = reliefs.iter().zip(excluded).collect();
+    goal.weigh(&sources);
     let mut details: Vec<Option<Detail>> = known_details(&goal, &free);
     let banded = match &params.ribbon {
         Some(ribbon) => Some(fill_structured(&goal, &mut details, &sources, ribbon, watch)?),
@@ -163,9 +167,16 @@ pub fn transfer(
     };
     let filled = fill_unstructured(&goal, &mut details, &sources, fan, params.search, watch)?;
     watch.step("reconstruct", 0.0)?;
+    let prepared = Reconstruction::new(&goal, &free)?;
+    let mut details: Vec<Detail> = details.iter().map(|d| d.unwrap_or_default()).collect();
+    let made = prepared.solve(&details);
+    watch.step("reconstruct", 0.4)?;
+    let made: Vec<DVec3> = made.iter().zip(&goal.base().mesh().positions).map(|(p, b)| *p - *b).collect();
+    let gains = match_bands(&goal, &free, &made, &sources, &mut details)?;
+    watch.step("reconstruct", 0.8)?;
     let intensity = params.intensity.unwrap_or(1.0);
-    let details: Vec<Detail> = details.iter().map(|d| d.unwrap_or_default().scaled(intensity)).collect();
-    let places = Reconstruction::new(&goal, &free)?.solve(&details);
+    let details: Vec<Detail> = details.iter().map(|d| d.scaled(intensity)).collect();
+    let places = prepared.solve(&details);
     let mut out = mesh.mesh().clone();
     let mut moved = vec![];
     for ((&v, place), _) in goal.vertices().iter().zip(places).zip(&free).filter(|(_, free)| **free) {
@@ -175,7 +186,7 @@ pub fn transfer(
         out.positions[v.index()] = place;
         moved.push(v);
     }
-    Ok(Transferred { mesh: out, moved, filled, banded, wavelength, fan, source_vertices, warnings })
+    Ok(Transferred { mesh: out, moved, filled, banded, gains, wavelength, fan, source_vertices, warnings })
 }
 
 /// The details that do not depend on where the free vertices are.

@@ -1,14 +1,14 @@
 //! Unstructured propagation: vertex by vertex, each taking the detail of the source vertex whose fan looks most alike (\[Lin2008\] §4.2).
 
+use crate::coherence::Place;
 use crate::error::Error;
-use crate::fan::{BRANCHES, Fan, NUMBERS, SAMPLES, fans};
+use crate::fan::{Fan, NUMBERS, SAMPLES, fans};
 use crate::library::{Library, Match, Query};
 use crate::relief::{Detail, Relief};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use mesh_core::{Adjacency, Faces, VertexId, Watch};
 use rayon::prelude::*;
 use std::collections::BinaryHeap;
-use std::f64::consts::TAU;
 
 /// How the most similar fan is searched for. Both find the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,8 +27,10 @@ pub struct Choice {
     pub vertex: VertexId,
     /// Which source, and the vertex by its number in that source's patch.
     pub source: (usize, VertexId),
-    /// Eighths of a turn from the target's frame to the source's.
-    pub turn: u8,
+    /// The angle from the target's frame to the source's, in radians.
+    pub turn: f64,
+    /// Found by search; others go on beside what a neighbour copied.
+    pub jump: bool,
     /// Root mean square difference of the two fans' known samples, as a share of the sources' root mean square signal.
     pub distance: f64,
     /// Known samples, of 24.
@@ -55,10 +57,15 @@ struct Exemplars {
 
 const NONE: u32 = u32::MAX;
 
+/// A vertex copies on beside its neighbours for as long as no fan is so many times more like. At 1 each goes its own way, and the bends of different places
+/// do not make a surface; beyond 8 hardly any leaves.
+const PATIENCE: f32 = 4.0;
+
 /// Gives detail to the vertices of `target` where `details` has none, from the sources' regions; `excluded` are vertices of each source's patch
 /// whose detail is not to be used.
 ///
-/// Vertices are filled in the order of how much of their fans is known, ties by number. The signal that fans are compared by is the
+/// Vertices are filled in the order of how much of their fans is known, ties by number. Where a neighbour was filled before, the source vertex beside its own, as far
+/// and turned as on the target, is taken unless another is four times more like (\[Ashikhmin2001\]'s coherence). The signal that fans are compared by is the
 /// bend plus the offset over the squared anchor length. About O(n log m) for n vertices to fill and m of the sources where detail
 /// resembles itself, towards O(n·m) where nothing resembles anything.
 ///
@@ -73,10 +80,8 @@ pub fn fill_unstructured(
     watch: &Watch,
 ) -> Result<Filled, Error> {
     match search {
-        Search::Exhaustive => fill_with(target, details, sources, length, watch, |library, q, _| library.exhaustive(q)),
-        Search::Indexed => fill_with(target, details, sources, length, watch, |library, q, hints| {
-            library.search(q, hints.iter().copied())
-        }),
+        Search::Exhaustive => fill_with(target, details, sources, length, watch, Library::exhaustive),
+        Search::Indexed => fill_with(target, details, sources, length, watch, Library::search),
     }
 }
 
@@ -86,7 +91,7 @@ fn fill_with(
     sources: &[(&Relief, Vec<bool>)],
     length: f64,
     watch: &Watch,
-    search: impl Fn(&Library, &Query, &[(u32, u8)]) -> Match,
+    search: impl Fn(&Library, &Query, f32) -> Option<Match>,
 ) -> Result<Filled, Error> {
     if !(length > 0.0 && length.is_finite()) {
         return Err(Error::Length { name: "fan length", value: length });
@@ -96,65 +101,65 @@ fn fill_with(
         return Ok(Filled::default());
     }
     watch.step("fans", 0.0)?;
-    let exemplars = exemplars(sources, length)?;
+    let exemplars = exemplars(target, sources, length)?;
     let library = Library::new(&exemplars.fans);
     watch.step("fans", 0.5)?;
     let mut front = Front::new(target, details, &missing, fans(target, &missing, length), exemplars.scale);
     let mut filled = Filled::default();
-    let mut taken: Vec<Option<(u32, u8)>> = vec![None; details.len()];
-    let mut hints = vec![];
+    let mut taken: Vec<Option<Place>> = vec![None; details.len()];
     while let Some(k) = front.next() {
         if filled.choices.len() % 256 == 0 {
             watch.step("fill", filled.choices.len() as f64 / missing.len() as f64)?;
         }
         let v = missing[k];
         let query = front.query(k);
-        likely(target, VertexId(v), &taken, sources, &exemplars, &mut hints);
-        let found = search(&library, &query, &hints);
-        let (source, vertex) = exemplars.names[found.entry as usize];
-        let detail = turned(&sources[source].0.details()[vertex as usize], found.turn);
-        details[v as usize] = Some(detail);
-        taken[v as usize] = Some((found.entry, found.turn));
+        let beside = best_beside(target, VertexId(v), &taken, sources, &exemplars, &library, &query);
+        let limit = beside.map_or(f32::INFINITY, |(_, distance)| distance / (PATIENCE * PATIENCE));
+        let (place, distance, jump) = match (search(&library, &query, limit), beside) {
+            (None, Some((place, distance))) => (place, distance, false),
+            (Some(found), _) => {
+                let (source, vertex) = exemplars.names[found.entry as usize];
+                (Place::at(source, VertexId(vertex), found.turn), found.distance, true)
+            }
+            (None, None) => continue,
+        };
         let known = u32::from(front.confidence[k]);
-        let distance = (f64::from(found.distance) / f64::from(known.max(1))).sqrt();
-        let source = (source, VertexId(vertex));
-        filled.choices.push(Choice { vertex: VertexId(v), source, turn: found.turn, distance, known });
+        let distance = (f64::from(distance) / f64::from(known.max(1))).sqrt();
+        let source = (place.source, place.vertex);
+        filled.choices.push(Choice { vertex: VertexId(v), source, turn: place.angle, jump, distance, known });
+        let detail = place.detail(sources[place.source].0);
+        details[v as usize] = Some(detail);
+        taken[v as usize] = Some(place);
         front.assign(k, target.signal(&detail));
     }
     Ok(filled)
 }
 
-/// The source vertices beside those that the neighbours took, turned alike.
-fn likely(
+/// Of the source places beside those that the neighbours copied from, the one most like, and its distance.
+fn best_beside(
     target: &Relief,
     v: VertexId,
-    taken: &[Option<(u32, u8)>],
+    taken: &[Option<Place>],
     sources: &[(&Relief, Vec<bool>)],
     exemplars: &Exemplars,
-    hints: &mut Vec<(u32, u8)>,
-) {
-    hints.clear();
+    library: &Library,
+    query: &Query,
+) -> Option<(Place, f32)> {
+    let mut best: Option<(Place, f32)> = None;
     for h in target.base().ring(v) {
-        let Some((entry, turn)) = taken[target.base().head(h).index()] else { continue };
-        hints.push((entry, turn));
-        let (source, vertex) = exemplars.names[entry as usize];
-        let base = sources[source].0.base();
-        for h in base.ring(VertexId(vertex)) {
-            let beside = exemplars.entries[source][base.head(h).index()];
-            if beside != NONE {
-                hints.push((beside, turn));
-            }
+        let n = target.base().head(h);
+        let Some(place) = taken[n.index()] else { continue };
+        let Some(place) = place.beside(target, n, v, sources[place.source].0) else { continue };
+        let entry = exemplars.entries[place.source][place.vertex.index()];
+        if entry == NONE {
+            continue;
+        }
+        let limit = best.map_or(f32::INFINITY, |b| b.1);
+        if let Some(distance) = library.distance(query, entry, place.turn(), limit).filter(|&d| d < limit) {
+            best = Some((place, distance));
         }
     }
-    hints.sort_unstable();
-    hints.dedup();
-}
-
-/// A source's detail as seen from a target whose branch 0 faces the source's branch `turn`.
-fn turned(detail: &Detail, turn: u8) -> Detail {
-    let back = DVec2::from_angle(-TAU * f64::from(turn) / BRANCHES as f64);
-    let turn = |v: DVec3| back.rotate(v.truncate()).extend(v.z);
-    Detail { bend: turn(detail.bend), offset: turn(detail.offset) }
+    best
 }
 
 /// How like the surroundings of `vertex` each vertex of the patch looks: root mean square difference of the fans, least over eight rotations, as
@@ -167,7 +172,7 @@ pub fn similarity(relief: &Relief, vertex: VertexId, length: f64) -> Result<Vec<
         return Err(Error::Length { name: "fan length", value: length });
     }
     let mut out = vec![f64::INFINITY; relief.vertices().len()];
-    let Ok(found) = exemplars(&[(relief, vec![])], length) else { return Ok(out) };
+    let Ok(found) = exemplars(relief, &[(relief, vec![])], length) else { return Ok(out) };
     let Some(&own) = found.entries[0].get(vertex.index()).filter(|&&e| e != NONE) else { return Ok(out) };
     let query = Query { values: found.fans[own as usize], known: (0..SAMPLES as u8).collect() };
     let library = Library::new(&found.fans);
@@ -177,12 +182,12 @@ pub fn similarity(relief: &Relief, vertex: VertexId, length: f64) -> Result<Vec<
     Ok(out)
 }
 
-fn exemplars(sources: &[(&Relief, Vec<bool>)], length: f64) -> Result<Exemplars, Error> {
+fn exemplars(target: &Relief, sources: &[(&Relief, Vec<bool>)], length: f64) -> Result<Exemplars, Error> {
     let (mut signals, mut candidates) = (vec![], vec![]);
     let (mut squares, mut count) = (0.0, 0usize);
     for (relief, excluded) in sources {
         let usable = |i: usize| !relief.rim()[i] && excluded.get(i) != Some(&true);
-        let signal: Vec<DVec3> = relief.details().iter().map(|d| relief.signal(d)).collect();
+        let signal: Vec<DVec3> = relief.details().iter().map(|d| target.signal(d)).collect();
         let own: Vec<u32> = relief.region_vertices(excluded).collect();
         for &v in &own {
             squares += signal[v as usize].length_squared();

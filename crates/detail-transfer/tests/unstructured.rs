@@ -1,6 +1,6 @@
 //! Vertex-by-vertex propagation.
 
-use detail_transfer::{BaseParams, Detail, Relief, Search, fill_unstructured};
+use detail_transfer::{BaseParams, Detail, Exemplar, FanLength, Params, Relief, Search, fill_unstructured, transfer};
 use glam::DVec3;
 use mesh_core::{Connected, FaceMap, Faces, TriMesh, Watch, shapes};
 use std::time::Instant;
@@ -39,17 +39,24 @@ fn time_ten_thousand() {
     let source: FaceMap<bool> = mesh.face_ids().map(|f| middle(f).x > 0.22).collect::<Vec<_>>().into();
     let start = Instant::now();
     let params = BaseParams::new(0.2);
-    let [a, b] = [&target, &source].map(|r| Relief::encode(&mesh, r, &params, &Watch::default()).unwrap());
+    let [mut a, b] = [&target, &source].map(|r| Relief::encode(&mesh, r, &params, &Watch::default()).unwrap());
     println!("encode {:?}", start.elapsed());
     let free = a.interior();
     let known: Vec<Option<Detail>> = a.details().iter().zip(&free).map(|(d, f)| (!f).then_some(*d)).collect();
     println!("to fill {}, source {}", free.iter().filter(|f| **f).count(), b.interior().iter().filter(|f| **f).count());
     let sources = [(&b, vec![])];
+    a.weigh(&sources);
+    let start = Instant::now();
+    let exemplar = Exemplar { mesh: &mesh, inside: &source };
+    let params = Params { wavelength: Some(0.2), fan: FanLength::Units(0.03), ..Params::default() };
+    transfer(&mesh, &target, &[exemplar], &params, &Watch::default()).unwrap();
+    println!("the whole transfer {:?}", start.elapsed());
     let mut both = vec![];
     for search in [Search::Indexed, Search::Exhaustive] {
         let mut details = known.clone();
         let start = Instant::now();
         let filled = fill_unstructured(&a, &mut details, &sources, 0.03, search, &Watch::default()).unwrap();
+        println!("jumps {}", filled.choices.iter().filter(|c| c.jump).count());
         println!("{search:?} {:?} {}", start.elapsed(), filled.choices.len());
         let mean = |f: &dyn Fn(&detail_transfer::Choice) -> f64| {
             filled.choices.iter().map(f).sum::<f64>() / filled.choices.len() as f64
