@@ -1,4 +1,5 @@
-//! The spectrum of detail: what is lost or gained where copied places meet, made good band by band.
+//! The spectrum of detail: what is lost or gained where copied places meet, made good band by band
+//! (\[HeegerBergen1995\]'s way with pictures).
 
 use crate::error::Error;
 use crate::operator::Diffusion;
@@ -24,7 +25,7 @@ impl<'a> Filters<'a> {
     fn new(relief: &'a Relief) -> Result<Self, Error> {
         let at = relief.base().mesh().positions[0];
         let filter = |band: usize| {
-            let radius = relief.wavelength() / TAU / (1 << (BANDS - 1 - band)) as f64;
+            let radius = relief.wavelength() / TAU / f64::from(1 << (BANDS - 1 - band));
             Diffusion::new(relief.operator(), relief.rim(), 0.5 * radius * radius).ok_or(Error::Singular { at })
         };
         (0..BANDS).into_par_iter().map(filter).collect::<Result<_, _>>().map(Self)

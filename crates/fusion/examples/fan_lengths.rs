@@ -1,6 +1,6 @@
-//! How the length of geodesic fans changes what looks alike (\[Lin2008\] Fig. 14): one picture for each of four lengths.
+//! How the length of geodesic fans changes what looks alike (\[Lin2008\] Fig. 14): one picture for each length, in model units.
 //!
-//! `cargo run --release -p fusion --example fan_lengths -- MESH X,Y,Z PREFIX`
+//! `cargo run --release -p fusion --example fan_lengths -- MESH X,Y,Z PREFIX LENGTH…`
 
 use fusion::detail_transfer::{BaseParams, Relief, similarity};
 use fusion::mesh_core::{Connected, FaceMap, Faces, VertexId, Watch, bounds};
@@ -11,7 +11,9 @@ use std::path::Path;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().collect();
-    let [_, path, place, prefix] = &arguments[..] else { return Err("MESH X,Y,Z PREFIX".into()) };
+    let [_, path, place, prefix, lengths @ ..] = &arguments[..] else {
+        return Err("MESH X,Y,Z PREFIX LENGTH…".into());
+    };
     let numbers: Vec<f64> = place.split(',').map(str::parse).collect::<Result<_, _>>()?;
     let at = DVec3::new(numbers[0], numbers[1], numbers[2]);
     let mesh = Connected::new(mesh_io::read(Path::new(path))?.mesh)?;
@@ -22,8 +24,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let positions = &mesh.mesh().positions;
     let distance = |i: &usize| positions[relief.vertices()[*i].index()].distance(at);
     let nearest = (0..relief.vertices().len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).ok_or("no vertex")?;
-    for share in [0.005, 0.01, 0.015, 0.02] {
-        let unlike = similarity(&relief, VertexId::from(nearest), share * diagonal)?;
+    for length in lengths {
+        let unlike = similarity(&relief, VertexId::from(nearest), length.parse()?)?;
         let mut sorted: Vec<f64> = unlike.iter().copied().filter(|d| d.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
         // White is alike; the least similar half is all the same blue.
@@ -36,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         colors[relief.vertices()[nearest].index()] = [0.85, 0.1, 0.1];
         let params =
             render::Params { width: 560, height: 560, color: render::Color::PerVertex(colors), ..Default::default() };
-        render::save(&render::picture(mesh.mesh(), &params, &watch)?, format!("{prefix}{share}.png"))?;
+        render::save(&render::picture(mesh.mesh(), &params, &watch)?, format!("{prefix}{length}.png"))?;
     }
     Ok(())
 }
