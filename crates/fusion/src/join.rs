@@ -5,7 +5,7 @@ use crate::{Counts, Error, Invalid, Report, blend, extent};
 use mesh_core::{Connected, Faces, Origins, Stage, TriMesh, Watch};
 use mesh_io::{Format, Model};
 use spine::BlendCurve;
-use tri_intersect::{Boolean, Contact, Operation, Slivers, Warning, boolean};
+use tri_intersect::{Boolean, Contact, Operation, Warning, boolean};
 
 /// What to do with the parts.
 #[derive(Clone, Debug)]
@@ -87,11 +87,7 @@ fn overlay(
     watch: &Watch,
 ) -> Result<Boolean, Error> {
     // Sheets that touch without crossing would be self-intersections of the file.
-    let mut how = tri_intersect::Params { contact: Contact::Refuse, ..tri_intersect::Params::default() };
-    if params.blend.as_ref().is_some_and(|b| !matches!(b.surface, blend::Surface::Keep(_))) {
-        // The blend removes the seam with all its slivers.
-        how.slivers = Slivers::Keep;
-    }
+    let how = tri_intersect::Params { contact: Contact::Refuse, ..tri_intersect::Params::default() };
     let cut = report
         .time("boolean", || boolean(&whole.mesh, &solid.mesh, params.operation, &how, watch))
         .map_err(|source| Error::Boolean { step, source })?;

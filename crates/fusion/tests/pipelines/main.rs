@@ -7,6 +7,7 @@ mod details;
 mod invariants;
 mod keep;
 mod placement;
+mod primitives;
 mod radii;
 mod scissors;
 mod self_crossing;
