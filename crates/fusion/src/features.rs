@@ -179,9 +179,8 @@ impl Edges {
         let [Some(&first), Some(&last)] = [chain.first(), chain.last()] else { return false };
         let ends = [mesh.tail(first), mesh.head(last)];
         // A curve that leaves through an opening was cut off there; it does not peter out.
-        let frayed = |&v: &VertexId| {
-            self.degree[v.index()] == 1 && mesh.outgoing(v).is_some_and(|h| mesh.twin(h).is_some())
-        };
+        let frayed =
+            |&v: &VertexId| self.degree[v.index()] == 1 && mesh.outgoing(v).is_some_and(|h| mesh.twin(h).is_some());
         chain.len() <= longest && ends.iter().any(frayed) && ends.iter().any(|v| self.degree[v.index()] > 2)
     }
 

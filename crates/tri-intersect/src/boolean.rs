@@ -1,7 +1,7 @@
 //! Union, difference and intersection of two solids.
 
 use crate::arrange::{self, Arrangement, Part};
-use crate::assemble::assemble;
+use crate::assemble::{Assembly, assemble};
 use crate::classify::{CUT, Flood, SeamTable};
 use crate::cut::Snaps;
 use crate::error::Error;
@@ -203,25 +203,30 @@ pub fn boolean(
         }));
     }
     clock.lap("assemble");
-    check::check(&result, &arrangement, &parts, &pieces, &near.faces)?;
+    let checked = |result: &Assembly| check::check(result, &arrangement, &parts, &pieces, &near.faces);
+    let mut fault = checked(&result).err();
     watch.step("check", 1.0)?;
     clock.lap("validate");
     if let Slivers::Collapse { tolerance } = params.slivers
-        && !arrangement.degenerate
+        && (fault.is_some() || !arrangement.degenerate)
     {
         let length = tolerance * bounds[0].union(bounds[1]).diagonal();
         let short = tidy::short_edges(&result, arrangement.counts[0] + arrangement.counts[1], length);
         if !short.is_empty() {
             let before = result.clone();
             let edges = tidy::collapse(&mut result, &arrangement, &parts, &short, length);
-            // Better a short edge than an intersection.
-            if check::check(&result, &arrangement, &parts, &pieces, &near.faces).is_err() {
+            // Better a short edge than an intersection; but slivers that rounding folded meet until they are gone.
+            if checked(&result).is_err() {
                 result = before;
             } else if edges > 0 {
+                fault = None;
                 clock.report.warnings.push(Warning::Collapsed { edges });
             }
         }
         clock.lap("slivers");
+    }
+    if let Some(fault) = fault {
+        return Err(fault);
     }
     if arrangement.degenerate || snaps.count > 0 {
         let first = arrangement.counts[0] + arrangement.counts[1];

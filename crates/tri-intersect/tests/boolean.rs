@@ -1,7 +1,7 @@
 //! Booleans against what does not share their mistakes: volumes, symmetry, grids, and the exact self-intersection test.
 
 use glam::DVec3;
-use mesh_core::{Connected, FaceOrigin, Faces, TriMesh, VertexOrigin, Watch, shapes};
+use mesh_core::{Connected, FaceOrigin, Faces, TriMesh, VertexOrigin, Watch, shapes, validate};
 use proptest::prelude::*;
 use std::collections::HashMap;
 use tri_intersect::{Boolean, Error, Operation, Params, Slivers, boolean, boolean_all, self_intersections, union_all};
@@ -291,4 +291,31 @@ proptest! {
             volumes_add_up(&a, &b);
         }
     }
+}
+
+/// A rod through a drum, with the coordinates of a 32-bit file: where diagonals of both cross, rounding folds a sliver, and
+/// the result was refused before the sliver could be collapsed.
+#[test]
+fn slivers_that_meet_are_collapsed_before_the_result_is_judged() {
+    let single = |mut mesh: TriMesh| {
+        mesh.positions.iter_mut().for_each(|p| *p = p.as_vec3().as_dvec3());
+        Connected::new(mesh).unwrap()
+    };
+    let mut met = 0;
+    for (segments, sides) in [(32, 24), (32, 16), (48, 24), (24, 24), (64, 32), (40, 20)] {
+        let drum = single(shapes::cylinder(1.0, 1.0, segments, 1));
+        let mut rod = shapes::cylinder(0.3, 3.0, sides, 1);
+        rod.positions.iter_mut().for_each(|p| *p = DVec3::new(p.z, p.y, -p.x));
+        let rod = single(rod);
+        for operation in [Operation::Union, Operation::Difference, Operation::Intersection] {
+            let made = boolean(&drum, &rod, operation, &Params::default(), &Watch::default());
+            let made = made.unwrap_or_else(|e| panic!("{segments} {sides} {operation:?}: {e}"));
+            assert!(validate(&made.mesh).is_closed());
+            assert!(self_intersections(&made.mesh, &Watch::default()).unwrap().is_empty());
+            let with =
+                |slivers| boolean(&drum, &rod, operation, &Params { slivers, ..Params::default() }, &Watch::default());
+            met += usize::from(with(Slivers::Keep).is_err());
+        }
+    }
+    assert!(met > 0);
 }

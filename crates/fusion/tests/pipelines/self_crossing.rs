@@ -63,9 +63,8 @@ fn where_the_offset_crosses_itself_the_spine_turns() {
     let rail: Rail = roll(&mesh, &curve, std::slice::from_ref(&curve), &spine::Params::new(RADIUS)).unwrap();
     let centers: Vec<DVec2> = rail.samples.iter().map(|s| s.center.truncate()).collect();
     assert!(!crosses_itself(&centers));
-    let distance = |c: &DVec2| {
-        (0..2000).map(|i| outline(f64::from(i) * TAU / 2000.0).distance(*c)).fold(f64::INFINITY, f64::min)
-    };
+    let distance =
+        |c: &DVec2| (0..2000).map(|i| outline(f64::from(i) * TAU / 2000.0).distance(*c)).fold(f64::INFINITY, f64::min);
     // Every ball touches the post and none cuts into it. Where it turns between both sides of the waist, balls are means.
     for c in &centers {
         let allowed = if c.x.abs() < 0.05 { 0.03 } else { 0.005 };
