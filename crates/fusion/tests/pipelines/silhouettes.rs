@@ -87,6 +87,37 @@ fn bends_follow_their_silhouettes() {
     }
 }
 
+/// Figure 9: two tubes farther and farther apart, joined with a bulging stroke on either side.
+#[test]
+fn strokes_lead_across_growing_distances() {
+    for distance in [4.0, 6.0, 8.0, 10.0, 12.0] {
+        let half = 0.5 * distance;
+        let parts = [-1.0, 1.0].map(|s| tube(1.0, DQuat::IDENTITY, DVec3::Z * (s * (half + 1.0))));
+        // A bulge that leaves both rims along the tubes.
+        let stroke = |side: f64| -> Vec<DVec3> {
+            let bulge = |t: f64| 1.0 + 0.8 * distance * (t * (1.0 - t)).powi(2);
+            let at = |t: f64| DVec3::new(side * bulge(t), 0.0, distance * (t - 0.5));
+            (1..40).map(|i| at(f64::from(i) / 40.0)).collect()
+        };
+        let silhouettes =
+            [1.0, -1.0].map(|s| Silhouette { view: DVec3::NEG_Y, strokes: vec![stroke(s)], ..Silhouette::default() });
+        let made = joined(&parts, &[DVec3::Z * -half, DVec3::Z * half], silhouettes.to_vec()).unwrap();
+        let residual = |name: &str| made.report.residuals[name];
+        assert!(residual("silhouette") < 1e-8, "{distance}: {:?}", made.report.residuals);
+        assert!(residual("silhouette_normal") < 1e-6, "{distance}: {:?}", made.report.residuals);
+        let mesh = &made.model.mesh;
+        assert_eq!(topology(&Connected::new(mesh).unwrap()).components, 1);
+        let pixel = fusion::mesh_core::bounds(mesh).diagonal() / 1024.0;
+        let off = [1.0, -1.0].map(|s| seen_off(mesh, DVec3::Y, &stroke(s)) / pixel);
+        println!(
+            "{distance}: {off:.2?} pixels, residual {:.1e}, normal {:.1e}",
+            residual("silhouette"),
+            residual("silhouette_normal")
+        );
+        assert!(off.iter().all(|&o| o < 1.0), "{distance}: {off:?} pixels");
+    }
+}
+
 #[test]
 fn a_hole_is_outlined() {
     let (low, high) =
