@@ -250,7 +250,9 @@ mod tests {
         let corner = mesh.vertex_ids().find(|&v| mesh.ring(v).count() == 6).unwrap();
         let ring: Vec<FaceId> = mesh.ring(corner).map(HalfedgeId::face).collect();
         let mut inside = vec![false; mesh.face_count()];
-        [ring[0], ring[3]].iter().for_each(|f| inside[f.index()] = true);
+        for f in [ring[0], ring[3]] {
+            inside[f.index()] = true;
+        }
         let faces = ids_of(&inside);
         assert!(widen_at_pinches(&mesh, &faces, &mut inside));
         assert!(ring.iter().all(|f| inside[f.index()]));
