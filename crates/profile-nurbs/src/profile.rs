@@ -20,9 +20,9 @@ pub enum Profile {
     /// The cubic with the arc's end tangents and middle point: a polynomial stand-in for the arc, at most 0.03% of r
     /// away at 90° (\[Liu2005\] offers it as "Hermite").
     Hermite,
-    /// A quintic that leaves both legs with zero curvature, so that reflections run unbroken from a flat face into the
-    /// blend. At 90° it is at most 3.7% of r away from the arc and 13% more curved at its tightest; its middle stands
-    /// out 1/8 farther than the arc's.
+    /// A quintic that leaves both legs with the curvature of the surfaces there, [`Section::bends`], so that reflections
+    /// run unbroken from the faces into the blend. Between flat faces at 90° it is at most 3.7% of r away from the arc and
+    /// 13% more curved at its tightest; its middle stands out 1/8 farther than the arc's.
     G2,
     /// A curve in the section's own affine frame: (1, 0, 0) is the first foot, (0, 0, 0) the apex, (0, 1, 0) the
     /// second foot. Made by [`Profile::custom`].
@@ -51,7 +51,7 @@ impl Profile {
 
     /// The profile in a section, from `p1` at parameter 0 to `p2` at 1 (a custom curve keeps its own domain).
     pub fn curve(&self, section: &Section) -> Nurbs {
-        let Section { p1, p0, p2 } = *section;
+        let Section { p1, p0, p2, .. } = *section;
         match self {
             Self::Chamfer => Nurbs::from_pieces(1, &[p1, p2], &[1.0; 2]),
             Self::Sharp => Nurbs::from_pieces(1, &[p1, p0, p2], &[1.0; 3]),
@@ -82,11 +82,15 @@ impl Profile {
                 let p = curve.point(0.5 * (first + last));
                 1.0 - p.x - p.y
             }
-            Self::Arc | Self::Conic(_) | Self::Hermite | Self::G2 => {
-                let w = self.apex_weight(section);
-                let conic = if w == f64::INFINITY { 1.0 } else { w / (1.0 + w) };
-                if *self == Self::G2 { 1.125 * conic } else { conic }
+            Self::G2 => {
+                let chord = section.p1.midpoint(section.p2);
+                let (apex, middle) = (section.p0 - chord, casteljau(quintic(section), 0.5) - chord);
+                middle.dot(apex) / apex.length_squared()
             }
+            Self::Arc | Self::Conic(_) | Self::Hermite => match self.apex_weight(section) {
+                f64::INFINITY => 1.0,
+                w => w / (1.0 + w),
+            },
         }
     }
 
@@ -113,14 +117,21 @@ pub(crate) fn hermite(s: &Section) -> [DVec3; 4] {
     [s.p1, s.p1.lerp(s.p0, handle), s.p2.lerp(s.p0, handle), s.p2]
 }
 
-/// Control points of the quintic: three on each leg in one line, so that curvature vanishes at the ends.
+/// Control points of the quintic: between flat surfaces three on each leg in one line, so that curvature vanishes at the
+/// ends; else the third stands off the leg by what gives it the surface's, 5/4·κ·|P1 − P0|².
 ///
 /// Their shares 3ω / (5 (1 + ω)) and 3ω / (2 (1 + ω)) of the legs balance a low peak of curvature, kept flat over the
 /// middle, against the steepness of its rise: of the choices with a peak near 1.15 this rises most gently.
 pub(crate) fn quintic(s: &Section) -> [DVec3; 6] {
     let w = s.arc_weight();
     let [near, far] = [0.6, 1.5].map(|k| k * w / (1.0 + w));
-    [s.p1, s.p1.lerp(s.p0, near), s.p1.lerp(s.p0, far), s.p2.lerp(s.p0, far), s.p2.lerp(s.p0, near), s.p2]
+    let third = |foot: DVec3, other: DVec3, bend: f64| {
+        let leg = s.p0 - foot;
+        let inside = (other - foot).reject_from_normalized(leg.normalize_or_zero()).normalize_or_zero();
+        foot + far * leg + 1.25 * bend * near * near * leg.length_squared() * inside
+    };
+    let [first, last] = [third(s.p1, s.p2, s.bends[0]), third(s.p2, s.p1, s.bends[1])];
+    [s.p1, s.p1.lerp(s.p0, near), first, last, s.p2.lerp(s.p0, near), s.p2]
 }
 
 /// From the normalised frame to space.

@@ -12,6 +12,9 @@ pub struct Section {
     pub p0: DVec3,
     /// Second foot.
     pub p2: DVec3,
+    /// How each surface bends at its foot, in the plane of the section: its normal curvature in 1/model unit, positive
+    /// towards the inside, as the arc bends. [`crate::Profile::G2`] takes it over; 0 is a flat surface.
+    pub bends: [f64; 2],
 }
 
 /// Feet may differ this much in their distance from the centre, relative to it: what solvers and f32 files leave.
@@ -43,7 +46,7 @@ impl Section {
         let chord = half / half_length;
         let square = |v: DVec3| (v - v.dot(chord) * chord).normalize_or_zero();
         let out = square(square(middle));
-        Ok(Self { p1, p0: p1 + half + half_length * (half_length / height) * out, p2 })
+        Ok(Self { p1, p0: p1 + half + half_length * (half_length / height) * out, p2, bends: [0.0; 2] })
     }
 
     /// The section between two feet with surface normals `n1` and `n2` (any length, either sign): the apex is the
@@ -64,7 +67,7 @@ impl Section {
         }
         let (cos, rise, fall) = (n1.dot(n2), half.dot(n1), half.dot(n2));
         let apex = (-rise - cos * fall) / det * n1 + (fall + cos * rise) / det * n2;
-        Ok(Self { p1, p0: p1 + half + apex, p2 })
+        Ok(Self { p1, p0: p1 + half + apex, p2, bends: [0.0; 2] })
     }
 
     /// The weight of the apex that makes the conic an arc: cos(φ/2) where the legs are equal, and that of the ellipse

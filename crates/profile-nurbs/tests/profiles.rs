@@ -153,6 +153,32 @@ fn g2_leaves_the_legs_without_curvature_or_turning_back() {
     }
 }
 
+/// The ends take the surfaces' curvatures, both of them and with their signs; with those of the ball the quintic is nearly
+/// the arc.
+#[test]
+fn g2_continues_the_curvature_of_its_surfaces() {
+    for bends in [[0.4, 0.0], [-1.5, 0.3], [-0.7, -2.0]] {
+        for phi in [0.3, 1.0, FRAC_PI_2, 2.5] {
+            let (center, s) = ball(1.0, phi, 1.1);
+            let s = Section { bends, ..s };
+            let curve = Profile::G2.curve(&s);
+            for (k, (u, foot)) in [(0.0, s.p1), (1.0, s.p2)].into_iter().enumerate() {
+                let d = curve.derivatives(u, 2);
+                let towards = (center - foot).normalize();
+                let curvature = d[2].reject_from(d[1]).dot(towards) / d[1].length_squared();
+                assert!((curvature - bends[k]).abs() < 1e-11, "{phi}: {curvature} {bends:?}");
+            }
+            let middle = curve.point(0.5);
+            let chord = s.p1.midpoint(s.p2);
+            let share = (middle - chord).dot(s.p0 - chord) / (s.p0 - chord).length_squared();
+            assert!((share - Profile::G2.reach(&s)).abs() < 1e-13);
+        }
+    }
+    let (center, s) = ball(1.0, FRAC_PI_2, 0.3);
+    let curve = Profile::G2.curve(&Section { bends: [1.0; 2], ..s });
+    assert!((0..=100).all(|i| (curve.point(f64::from(i) / 100.0).distance(center) - 1.0).abs() < 0.01));
+}
+
 #[test]
 fn custom_profiles_live_in_the_feet_frame() {
     let arc = |w: f64| Nurbs::bezier(&[DVec3::X, DVec3::ZERO, DVec3::Y], &[1.0, w, 1.0]).unwrap();
@@ -217,6 +243,7 @@ fn sweep_derivatives_match_differences() {
         p1: DVec3::new(x, 0.0, x * x),
         p0: DVec3::new(x, 1.0, 0.0),
         p2: DVec3::new(x, 1.0, 1.0 + x),
+        bends: [0.0, 0.1 * x],
     };
     let profiles = [Profile::Arc, Profile::Conic(2.0), Profile::G2];
     let curves = profiles.iter().zip([0.0, 1.0, 3.0]).map(|(p, x)| p.curve(&section(x))).collect();

@@ -33,17 +33,20 @@ pub struct Sample {
     pub radius: f64,
     /// Fair feet on the left and right patch.
     pub feet: [ClosestPoint; 2],
+    /// Normal curvature of each side across the curve at its foot, positive towards the ball, in 1/model unit; 0 unless
+    /// [`crate::Rail::measure_bends`] measured it.
+    pub bends: [f64; 2],
 }
 
 impl From<Contact> for Sample {
     fn from(ball: Contact) -> Self {
-        Self { center: ball.center, radius: ball.radius, feet: ball.feet }
+        Self { center: ball.center, radius: ball.radius, feet: ball.feet, bends: [0.0; 2] }
     }
 }
 
 impl Sample {
     /// How far whichever of centre and feet moves most is from where it is in `next`.
-    fn advance(&self, next: &Self) -> f64 {
+    pub(crate) fn advance(&self, next: &Self) -> f64 {
         (0..2)
             .map(|s| self.feet[s].point.distance(next.feet[s].point))
             .fold(self.center.distance(next.center), f64::max)
@@ -153,7 +156,7 @@ fn fill_jumps<M: Adjacency + Positions>(
         // Where a foot jumps, the seated ball's stays at one end of the jump: the walked one is kept.
         let jumped = (0..2).any(|s| !near(ball.feet[s].point, known[s]));
         let feet = if jumped { walked.feet } else { ball.feet };
-        Some(Sample { center: ball.center, radius: ball.radius, feet })
+        Some(Sample { feet, ..Sample::from(ball) })
     };
     let samples: Vec<Sample> = contacts.iter().copied().map(Sample::from).collect();
     let filled = subdivide(&samples, closed, [gap, longest], between);
@@ -212,6 +215,7 @@ fn walk<M: Adjacency + Positions>(
         center: here.center.lerp(next.center, t),
         radius: here.radius + t * (next.radius - here.radius),
         feet: [foot(0)?, foot(1)?],
+        bends: [0.0; 2],
     })
 }
 

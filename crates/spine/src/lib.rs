@@ -24,7 +24,9 @@
 //! | `offset.rs`, `offset/` | the other solver: the crossing of the two offset patches |
 //! | `fair.rs` | feet smoothed into fair linkages |
 //! | `regress.rs` | folds of the sweep cut out and bridged |
+//! | `bend.rs` | how the sides bend across the curve |
 
+mod bend;
 mod contact;
 mod curve;
 mod fair;

@@ -70,7 +70,7 @@ pub(crate) fn set_back(
                     own[node.darts[i].right()] = feet[(i + k - 1) % k];
                     // The rail's last ball but one stays clear of the corner's.
                     let at = views[i].advance(views[i].nearest(center), 0.35 * step);
-                    (at, Some(Sample { center, radius, feet: own }))
+                    (at, Some(Sample { center, radius, feet: own, ..views[i].sample(at) }))
                 })
                 .collect();
             let crossings = feet.iter().map(|f| Some(f.point)).collect();

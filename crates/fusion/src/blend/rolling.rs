@@ -6,6 +6,7 @@ use super::mends::Mends;
 use super::network::Network;
 use super::trouble::Trouble;
 use mesh_core::{Adjacency, Connected, Faces, Positions, TriMesh};
+use profile_nurbs::Profile;
 use rayon::prelude::*;
 use spine::{BlendCurve, Rail, roll_or_halt};
 
@@ -65,7 +66,10 @@ pub(super) fn roll_missing(
     for ((rail, rolled), curve) in rails.iter_mut().zip(rolled).zip(curves) {
         match rolled {
             None => {}
-            Some(Ok(r)) => {
+            Some(Ok(mut r)) => {
+                if params.profile == Profile::G2 {
+                    r.measure_bends(mesh);
+                }
                 params.sketch.page(mesh, curve).rail(mesh, &r);
                 *rail = Some(r);
             }

@@ -102,6 +102,7 @@ impl Outward<'_> {
         mixed.radius = a.radius + t * (b.radius - a.radius);
         for s in 0..2 {
             mixed.feet[s].point = a.feet[s].point.lerp(b.feet[s].point, t);
+            mixed.bends[s] = a.bends[s] + t * (b.bends[s] - a.bends[s]);
         }
         mixed
     }

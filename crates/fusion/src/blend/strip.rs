@@ -117,7 +117,7 @@ pub(crate) fn profile_points(
     row: &mut Vec<DVec3>,
 ) {
     row.clear();
-    let section = section(ball.center, feet, fineness.sides);
+    let section = section(ball, feet, fineness.sides);
     let section = fineness.reach.map_or(section, |reach| section.with_reach(ball.center, reach));
     let bend = (feet[0] - ball.center).angle_between(feet[1] - ball.center);
     // Chords of an arc of angle δ stand off by r·(1 − cos(δ/2)).
@@ -133,7 +133,8 @@ pub(crate) fn profile_points(
 /// centre differ a little, that is centre + α·e1 + β·e2 with α = d̄/(1+c) + Δ/(1−c), β = d̄/(1+c) − Δ/(1−c). In shallow
 /// wedges the difference Δ would throw it beyond the feet; there it is held back, at the cost of a small kink at the
 /// linkage. What two radii in the ratio of `sides` differ by is no such error.
-pub(crate) fn section(center: DVec3, [p1, p2]: [DVec3; 2], sides: [f64; 2]) -> Section {
+pub(crate) fn section(ball: &Sample, [p1, p2]: [DVec3; 2], sides: [f64; 2]) -> Section {
+    let center = ball.center;
     let (r1, r2) = (p1 - center, p2 - center);
     let (d1, d2) = (r1.length(), r2.length());
     let (e1, e2) = (r1 / d1, r2 / d2);
@@ -144,7 +145,8 @@ pub(crate) fn section(center: DVec3, [p1, p2]: [DVec3; 2], sides: [f64; 2]) -> S
     let meant = meant.clamp(-0.98 * mean, 0.98 * mean);
     let most = 0.5 * (mean - meant.abs());
     let skew = (0.5 * (d1 - d2) / (1.0 - c).max(1e-300)).clamp(meant - most, meant + most);
-    Section { p1, p0: center + (mean + skew) * e1 + (mean - skew) * e2, p2 }
+    let p0 = center + (mean + skew) * e1 + (mean - skew) * e2;
+    Section { p1, p0, p2, bends: ball.bends }
 }
 
 /// Which way the surface between two profiles faces: to the ball in a valley, away from it on a ridge.

@@ -157,7 +157,10 @@ fn roll_all(
         let wanted = (params.tolerance * params.radius).max(edge * edge / (32.0 * params.radius));
         // Heights fall as the square of the step.
         let refined = (chord_height(&rail) / wanted).sqrt();
-        let rail = if refined > 1.0 { with_step(step / refined.min(FINEST))? } else { rail };
+        let mut rail = if refined > 1.0 { with_step(step / refined.min(FINEST))? } else { rail };
+        if params.profile == profile_nurbs::Profile::G2 {
+            rail.measure_bends(mesh);
+        }
         params.sketch.page(mesh, curve).rail(mesh, &rail);
         Ok::<_, spine::Error>(rail)
     });

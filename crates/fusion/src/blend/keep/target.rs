@@ -50,7 +50,7 @@ impl Target {
                 .fold(here.center.distance(next.center), f64::max);
         }
         stations.push(run);
-        let sections: Vec<_> = samples.iter().map(|s| section(s.center, s.feet.map(|f| f.point), sides)).collect();
+        let sections: Vec<_> = samples.iter().map(|s| section(s, s.feet.map(|f| f.point), sides)).collect();
         let closed = |i: usize| &sections[i % n];
         let feet = [0, 1].map(|side: usize| (0..=n).map(|i| [closed(i).p1, closed(i).p2][side]).collect());
         let turns = (0..=n).map(|i| closed(i).angle()).collect();

@@ -9,6 +9,7 @@
 //! | `mod.rs` | bounds, order, validity and locality of every case |
 //! | `balls.rs` | balls against the input's triangles |
 //! | `volume.rs` | material added and taken |
+//! | `curvature.rs` | jumps of curvature at the linkages |
 //! | `field.rs` | the blend as a field |
 //! | `symmetry.rs` | threads, order of the parts, quarter turns |
 //!
@@ -16,6 +17,7 @@
 
 mod balls;
 mod cases;
+mod curvature;
 mod field;
 mod measure;
 mod symmetry;
