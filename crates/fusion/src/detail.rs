@@ -60,7 +60,7 @@ pub fn detail(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcome
     report.describe(&made.mesh, &origins);
     let model = dress(&parts[0], made);
     report.validity =
-        report.time("validate", || as_written(&model, &origins, params.format, Promise::Manifold, watch))?;
+        report.time("validate", || as_written(&model, &origins, &[], params.format, Promise::Manifold, watch))?;
     Ok(Outcome { model, origins, report })
 }
 

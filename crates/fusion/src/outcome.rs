@@ -3,7 +3,7 @@
 use crate::blend::{self, Blended};
 use crate::validity::as_written;
 use crate::{Error, Invalid, Report, carry};
-use mesh_core::{Origins, TriMesh, Watch};
+use mesh_core::{Connected, Origins, TriMesh, Watch};
 use mesh_io::{Format, Model};
 
 /// A result, validated in the coordinates that its format holds.
@@ -26,6 +26,20 @@ pub(crate) enum Promise {
     Manifold,
 }
 
+/// What a result was made from.
+#[derive(Clone, Copy)]
+pub(crate) struct Inputs<'a> {
+    pub models: &'a [Model],
+    /// Their meshes, if they are still connected: what is whole of them need not be connected again.
+    pub connected: &'a [&'a Connected<TriMesh>],
+}
+
+impl<'a> From<&'a [Model]> for Inputs<'a> {
+    fn from(models: &'a [Model]) -> Self {
+        Self { models, connected: &[] }
+    }
+}
+
 /// Checks a closed result as its format will hold it, and completes the report.
 pub(crate) fn finish(
     parts: &[Model],
@@ -39,18 +53,20 @@ pub(crate) fn finish(
 }
 
 /// Checks a result as its format will hold it, and completes the report.
-pub(crate) fn finish_as(
+pub(crate) fn finish_as<'a>(
     promise: Promise,
-    parts: &[Model],
+    inputs: impl Into<Inputs<'a>>,
     mesh: TriMesh,
     origins: Origins,
     format: Format,
     mut report: Report,
     watch: &Watch,
 ) -> Result<Outcome, Error> {
+    let inputs = inputs.into();
     report.describe(&mesh, &origins);
-    let model = report.time("attributes", || carry(parts, mesh, &origins));
-    report.validity = report.time("validate", || as_written(&model, &origins, format, promise, watch))?;
+    let model = report.time("attributes", || carry(inputs.models, mesh, &origins));
+    let known = inputs.connected;
+    report.validity = report.time("validate", || as_written(&model, &origins, known, format, promise, watch))?;
     Ok(Outcome { model, origins, report })
 }
 

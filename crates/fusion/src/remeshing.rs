@@ -122,7 +122,7 @@ pub fn remesh(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, E
     }
     report.describe(&base.mesh, &origins);
     report.validity =
-        report.time("validate", || as_written(&base, &origins, params.format, Promise::Manifold, watch))?;
+        report.time("validate", || as_written(&base, &origins, &[], params.format, Promise::Manifold, watch))?;
     Ok(Outcome { model: base, origins, report })
 }
 

@@ -2,7 +2,7 @@
 
 use crate::blend::{self, Limit};
 use crate::features::{self, Convexity, FeatureCurve, feature_curves, nearest_curve};
-use crate::outcome::{Outcome, Promise, account, finish_as, surviving};
+use crate::outcome::{Inputs, Outcome, Promise, account, finish_as, surviving};
 use crate::picks::{self, Picked};
 use crate::{Counts, Error, Report, extent};
 use glam::DVec3;
@@ -99,7 +99,8 @@ fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch)
     let blended = report.time("blend", || blend::blend(&mesh, &curves, how, watch))?;
     account(&blended, how, &mut report);
     let promise = Promise::Openings(boundary_loops(&mesh).len());
-    finish_as(promise, std::slice::from_ref(part), blended.mesh, blended.origins, params.format, report, watch)
+    let inputs = Inputs { models: std::slice::from_ref(part), connected: &[&mesh] };
+    finish_as(promise, inputs, blended.mesh, blended.origins, params.format, report, watch)
 }
 
 fn choose(mesh: &Connected<TriMesh>, params: &Params) -> Result<Vec<BlendCurve>, Error> {

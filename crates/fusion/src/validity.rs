@@ -3,7 +3,7 @@
 use crate::outcome::Promise;
 use crate::{Error, Validity};
 use glam::DVec3;
-use mesh_core::{Connected, FaceId, FaceOrigin, Faces, NotManifold, Origins, Watch, boundary_loops, validate};
+use mesh_core::{Connected, FaceId, FaceOrigin, Faces, NotManifold, Origins, TriMesh, Watch, boundary_loops, validate};
 use mesh_io::{Format, Model};
 use rayon::prelude::*;
 use tri_intersect::self_intersections_among;
@@ -32,10 +32,12 @@ impl From<NotManifold> for Invalid {
 
 /// Checks a result as `format` will hold it: finite, oriented, 2-manifold, closed where promised, and no changed face meeting another.
 ///
-/// Faces that rounding moves count as changed. Whole faces of the inputs are trusted among each other.
+/// Faces that rounding moves count as changed. Whole faces of the inputs are trusted among each other. `inputs` are those of
+/// the origins, or none: with them a large result is connected sooner.
 pub(crate) fn as_written(
     model: &Model,
     origins: &Origins,
+    inputs: &[&Connected<TriMesh>],
     format: Format,
     promise: Promise,
     watch: &Watch,
@@ -44,7 +46,7 @@ pub(crate) fn as_written(
     let rounded = mesh_io::as_written(model, format);
     let (shape, format) = rounded.as_ref().map_or((mesh, None), |r| (r, Some(format)));
     let invalid = |reason: String, at: Option<DVec3>| Err(Invalid { reason, at, format }.into());
-    let connected = match Connected::new(shape) {
+    let connected = match Connected::carried(shape, inputs, origins) {
         Ok(connected) if shape.positions.par_iter().all(|p| p.is_finite()) => connected,
         fault => return invalid(validate(shape).to_string().replace('\n', ";"), fault.err().and_then(|e| e.place)),
     };

@@ -49,11 +49,16 @@ impl<M: Faces + Positions + Sync> Connected<M> {
     /// [`NotManifold`], listing every offending edge, vertex and face.
     #[expect(clippy::result_large_err, reason = "built once per mesh, and its lists are public")]
     pub fn new(mesh: M) -> Result<Self, NotManifold> {
-        crate::corner_table::connect(&mesh).map(|(twins, outgoing)| Self { mesh, twins, outgoing })
+        crate::corner_table::connect(&mesh).map(|(twins, outgoing)| Self::from_table(mesh, twins, outgoing))
     }
 }
 
 impl<M> Connected<M> {
+    /// From neighbourhoods that are known to be right.
+    pub(crate) fn from_table(mesh: M, twins: Vec<u32>, outgoing: Vec<u32>) -> Self {
+        Self { mesh, twins, outgoing }
+    }
+
     /// The mesh inside.
     pub fn mesh(&self) -> &M {
         &self.mesh

@@ -36,9 +36,9 @@ pub(crate) fn connect<M: Faces + Positions + Sync>(mesh: &M) -> Result<(Vec<u32>
     if defects.out_of_range.is_empty() && defects.degenerate.is_empty() {
         let twins = pair(mesh, &mut defects);
         if defects.edges.is_empty() && defects.misoriented.is_empty() {
-            let outgoing = fans(mesh, &twins, &mut defects);
-            if defects.vertices.is_empty() {
-                return Ok((twins, outgoing));
+            match fans(mesh, &twins) {
+                Ok(outgoing) => return Ok((twins, outgoing)),
+                Err(vertices) => defects.vertices = vertices,
             }
         }
     }
@@ -93,8 +93,8 @@ fn pair<M: Faces + Sync>(mesh: &M, defects: &mut NotManifold) -> Vec<u32> {
     twins.into_iter().map(AtomicU32::into_inner).collect()
 }
 
-/// Picks the first halfedge of each fan and finds vertices with more than one fan.
-fn fans<M: Faces + Sync>(mesh: &M, twins: &[u32], defects: &mut NotManifold) -> Vec<u32> {
+/// The first halfedge of each vertex' fan; or else the vertices with more than one fan.
+pub(crate) fn fans<M: Faces + Sync>(mesh: &M, twins: &[u32]) -> Result<Vec<u32>, Vec<VertexId>> {
     let range = range_len(mesh);
     let mut outgoing = vec![NONE; mesh.vertex_count()];
     let seen: usize = outgoing
@@ -106,17 +106,42 @@ fn fans<M: Faces + Sync>(mesh: &M, twins: &[u32], defects: &mut NotManifold) -> 
         })
         .sum();
     // Each fan's corners were counted once; corners left over belong to second fans.
-    if seen != twins.len() {
-        let mut degree = vec![0; mesh.vertex_count()];
-        for f in mesh.face_ids() {
-            for v in mesh.corners(f) {
-                degree[v.index()] += 1;
-            }
-        }
-        let broken = |&v: &VertexId| turn_to_start(twins, &mut { outgoing[v.index()] }) != degree[v.index()];
-        defects.vertices = mesh.vertex_ids().filter(broken).collect();
+    if seen == twins.len() {
+        return Ok(outgoing);
     }
-    outgoing
+    let mut degree = vec![0; mesh.vertex_count()];
+    for f in mesh.face_ids() {
+        for v in mesh.corners(f) {
+            degree[v.index()] += 1;
+        }
+    }
+    let broken = |&v: &VertexId| turn_to_start(twins, &mut { outgoing[v.index()] }) != degree[v.index()];
+    Err(mesh.vertex_ids().filter(broken).collect())
+}
+
+/// Whether the edge of `h` is met once in the fans of both its ends.
+pub(crate) fn ring_holds_once<M: Faces>(mesh: &M, twins: &[u32], outgoing: &[u32], h: HalfedgeId) -> bool {
+    let corners = mesh.corners(h.face());
+    let ends = [corners[h.corner()], corners[(h.corner() + 1) % 3]];
+    [ends, [ends[1], ends[0]]].into_iter().all(|[around, other]| {
+        let (first, mut met) = (outgoing[around.index()], 0);
+        let mut at = first;
+        loop {
+            // `at` leaves; the edge before it in the same face arrives.
+            let (leaving, arriving) = (HalfedgeId(at), HalfedgeId(at).prev());
+            met += usize::from(mesh.head(leaving) == other);
+            let next = twins[arriving.index()];
+            if next == NONE {
+                met += usize::from(mesh.tail(arriving) == other);
+                break;
+            }
+            if next == first {
+                break;
+            }
+            at = next;
+        }
+        met == 1
+    })
 }
 
 fn lowest_outgoing<M: Faces>(mesh: &M, low: u32, chunk: &mut [u32]) {

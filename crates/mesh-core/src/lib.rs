@@ -14,6 +14,7 @@
 //! | `traits.rs` | the five traits: faces, adjacency, positions, sink, edit observer |
 //! | `mesh.rs` | `TriMesh`, passive positions and faces |
 //! | `connected.rs`, `corner_table.rs`, `edge_groups.rs` | `Connected`, the one place that decides manifoldness |
+//! | `carried.rs` | the same for meshes made from connected ones |
 //! | `validate.rs`, `collinear.rs` | every defect of a mesh, by kind |
 //! | `loops.rs`, `components.rs` | boundary loops and connected components |
 //! | `normal.rs` | normals of faces, vertices, sides and corners |
@@ -30,6 +31,7 @@
 //! | `shapes/` | procedural shapes for tests and fixtures |
 
 mod bounds;
+mod carried;
 mod collinear;
 mod components;
 mod compose;

@@ -244,7 +244,7 @@ impl Replay<'_> {
     fn finish(mut self) -> Result<Outcome, Error> {
         let last = self.only("join what is left over")?;
         let piece = self.pieces.swap_remove(last);
-        finish_as(Promise::Manifold, &self.first, piece.mesh, piece.origins, self.format, self.report, self.watch)
+        finish_as(Promise::Manifold, &self.first[..], piece.mesh, piece.origins, self.format, self.report, self.watch)
     }
 
     fn models(&self, which: &[usize]) -> Vec<Model> {
