@@ -7,6 +7,7 @@ use crate::ids::{FaceId, HalfedgeId, VertexId};
 use crate::origin::{FaceOrigin, Origins, VertexOrigin};
 use crate::traits::{Adjacency, Faces, Positions};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 impl<M: Faces + Positions + Sync> Connected<M> {
     /// [`Connected::new`] for a mesh with known `origins` in `parts`, several times as fast where most faces are whole
@@ -78,20 +79,21 @@ where
     M: Faces + Sync,
     P: Adjacency + Sync,
 {
-    let whole = |f: usize| {
-        let FaceOrigin::Input { part, face } = origins.faces[FaceId::from(f)] else { return None };
-        let old = parts.get(part as usize).filter(|p| face.index() < p.face_count())?;
+    // Relaxed atomics: the lowest face wins, whoever comes first.
+    let unplaced = |p: &&P| (0..p.face_count()).into_par_iter().map(|_| AtomicU32::new(NONE)).collect();
+    let now: Vec<Vec<AtomicU32>> = parts.iter().map(unplaced).collect();
+    (0..mesh.face_count() as u32).into_par_iter().map(FaceId).for_each(|f| {
+        let FaceOrigin::Input { part, face } = origins.faces[f] else { return };
+        let (Some(old), Some(now)) = (parts.get(part as usize), now.get(part as usize)) else { return };
+        let Some(slot) = now.get(face.index()) else { return };
         let is = |(v, vertex): (VertexId, VertexId)| {
             origins.vertices.as_slice().get(v.index()) == Some(&VertexOrigin::Input { part, vertex })
         };
-        mesh.corners(FaceId::from(f)).into_iter().zip(old.corners(face)).all(is).then_some((part, face))
-    };
-    let mut now: Vec<Vec<u32>> = parts.iter().map(|p| vec![NONE; p.face_count()]).collect();
-    let found: Vec<_> = (0..mesh.face_count()).into_par_iter().map(whole).collect();
-    for (f, (part, face)) in (0..).zip(found).filter_map(|(f, w)| Some((f, w?))) {
-        now[part as usize][face.index()] = f;
-    }
-    now
+        if mesh.corners(f).into_iter().zip(old.corners(face)).all(is) {
+            slot.fetch_min(f.0, Ordering::Relaxed);
+        }
+    });
+    now.into_iter().map(|n| n.into_iter().map(AtomicU32::into_inner).collect()).collect()
 }
 
 /// Pairs the halfedges that have no twin yet, and returns them all; `None` if three share an edge or two run alike.
