@@ -1,7 +1,7 @@
 //! How a ball is rolled, as typed: the options that `blend` and the booleans share.
 
 use crate::failure::Failure;
-use crate::length::{Length, Radius, radius_at};
+use crate::length::{Length, Radius, point, radius_at};
 use crate::output::{self, Outputs};
 use clap::{Args, ValueEnum};
 use fusion::blend::{self, Sketch};
@@ -22,6 +22,11 @@ pub struct Rolling {
     /// smoothly, to that of --radius at the ends of an open curve and half-way round a closed one with a single place
     #[arg(long, value_name = "X,Y,Z=R", value_parser = radius_at, requires = "radius", allow_hyphen_values = true)]
     pub radius_at: Vec<(DVec3, Length)>,
+    /// The cross-section at the place of a curve nearest to X,Y,Z; may be given more than once. Between such places, and to
+    /// that of --profile at the ends of an open curve and half-way round a closed one with a single place, one changes
+    /// smoothly into the other
+    #[arg(long, value_name = "X,Y,Z=PROFILE", value_parser = profile_at, requires = "radius", allow_hyphen_values = true)]
+    pub profile_at: Vec<(DVec3, Curve)>,
     /// What to do where a full-size ball does not fit
     #[arg(long, value_enum, default_value_t = Overlap::Shrink, requires = "radius")]
     pub overlap: Overlap,
@@ -63,6 +68,11 @@ impl Rolling {
         Ok(blend::Params {
             radii,
             profile: self.profile.as_ref().map_or(Ok(Profile::Arc), |p| p.curve.profile())?,
+            profile_at: self
+                .profile_at
+                .iter()
+                .map(|(at, c)| Ok((*at, c.profile()?)))
+                .collect::<Result<_, Failure>>()?,
             reach: self.profile.as_ref().and_then(|p| p.reach),
             overlap: match self.overlap {
                 Overlap::Shrink => blend::Overlap::Shrink,
@@ -121,9 +131,12 @@ pub struct Section {
     reach: Option<f64>,
 }
 
+/// A profile by its name, or the file it stands in.
 #[derive(Clone, Debug, PartialEq)]
-enum Curve {
+pub enum Curve {
+    /// By its name.
     Known(Profile),
+    /// By its file.
     File(PathBuf),
 }
 
@@ -183,6 +196,12 @@ fn section(text: &str) -> Result<Section, String> {
         }
     };
     Ok(Section { curve: profile(curve)?, reach })
+}
+
+/// A profile at a place, `x,y,z=PROFILE`.
+fn profile_at(text: &str) -> Result<(DVec3, Curve), String> {
+    let (at, curve) = text.split_once('=').ok_or("a profile at a place is X,Y,Z=PROFILE, such as 0,1.5,-2=chamfer")?;
+    Ok((point(at)?, profile(curve)?))
 }
 
 fn profile(text: &str) -> Result<Curve, String> {

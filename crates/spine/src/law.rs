@@ -1,4 +1,4 @@
-//! The ball's radius along a curve: a monotone cubic through given places.
+//! What varies along a curve: a monotone cubic through given places for the radius, and where between them it is.
 
 use glam::DVec3;
 
@@ -110,16 +110,29 @@ impl Law {
         (best.1, best.2)
     }
 
-    fn share(&self, length: f64) -> (f64, f64) {
+    /// The shares at the keys before and after the point of the curve nearest to `x`, and how far it is from one to the
+    /// other: from 0 to 1, smoothly at both.
+    pub fn between(&self, x: DVec3) -> ([f64; 2], f64) {
+        let (a, b, _, t) = self.piece(self.nearest(x).0);
+        ([a.share, b.share], t * t * (3.0 - 2.0 * t))
+    }
+
+    /// The knots around a length, how far they are apart, and the place between them in [0, 1].
+    fn piece(&self, length: f64) -> (Knot, Knot, f64, f64) {
         let after = self.knots.partition_point(|k| k.length <= length);
         let n = self.knots.len();
         let (a, b) = (self.knots[(after + n - 1) % n], self.knots[after % n]);
         let wrapped = |x: f64| if x < 0.0 { x + self.total() } else { x };
         let (h, s) = (wrapped(b.length - a.length), wrapped(length - a.length));
-        if h == 0.0 || after == n && s > h {
-            return (a.share, 0.0);
+        let beyond = h == 0.0 || after == n && s > h;
+        (a, b, h, if beyond { 0.0 } else { s / h })
+    }
+
+    fn share(&self, length: f64) -> (f64, f64) {
+        let (a, b, h, t) = self.piece(length);
+        if t == 0.0 {
+            return (a.share, a.slope);
         }
-        let t = s / h;
         let (rise, p, q) = (b.share - a.share, a.slope * h, b.slope * h);
         let (c2, c3) = (3.0 * rise - 2.0 * p - q, p + q - 2.0 * rise);
         (a.share + t * (p + t * (c2 + t * c3)), (p + t * (2.0 * c2 + 3.0 * t * c3)) / h)

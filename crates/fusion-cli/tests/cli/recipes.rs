@@ -100,8 +100,8 @@ fn blends_in_recipes_have_the_options_of_the_command_line() {
     for (keys, options) in [
         ("radius = [0.1, 0.2]\nnear = [[0, 0.5, 0.5]]", "--radius 0.1,0.2 --near 0,0.5,0.5"),
         (
-            "radius = 0.1\nradius_at = [{ at = [0.5, 0.5, 0.5], radius = 0.2 }]\ncurves = \"edge.json\"",
-            "--radius 0.1 --radius-at 0.5,0.5,0.5=0.2 --curves edge.json",
+            "radius = 0.1\nradius_at = [{ at = [0.5, 0.5, 0.5], radius = 0.2 }]\nprofile_at = [{ at = [0, 0.5, 0.5], profile = \"conic=0.5\" }]\ncurves = \"edge.json\"",
+            "--radius 0.1 --radius-at 0.5,0.5,0.5=0.2 --profile-at 0,0.5,0.5=conic=0.5 --curves edge.json",
         ),
         (
             "radius = \"5%\"\nprofile = \"hermite\"\nreach = 1.3\nspine = \"contact\"\nnear = [[0, 0.5, 0.5]]",

@@ -2,6 +2,7 @@
 
 use super::corner::{self, Corner, Setbacks};
 use super::network::{Kind, Network, Node};
+use super::profiles::Profiles;
 use super::stretch::{Ending, Outward, Stretch};
 use super::strip::{Fineness, profile_points};
 use super::trouble::Trouble;
@@ -10,7 +11,6 @@ use mesh_core::{
     Adjacency, Connected, EdgeId, FaceId, Faces, HalfedgeId, Positions, SurfacePoint, TriMesh, face_normal,
 };
 use mesh_query::TriBvh;
-use profile_nurbs::Profile;
 use spine::{BlendCurve, Rail, Sample};
 use std::collections::HashSet;
 
@@ -28,7 +28,8 @@ pub(crate) struct Ends<'a> {
     pub mesh: &'a Connected<TriMesh>,
     pub curves: &'a [BlendCurve],
     pub network: &'a Network,
-    pub profile: &'a Profile,
+    /// Of each curve.
+    pub profiles: &'a [Profiles],
     pub fineness: Fineness,
 }
 
@@ -183,7 +184,7 @@ impl Ends<'_> {
             // Tangent to both sides, as the spine is not where the radius changes.
             let [a, b] = [0, 1].map(|side: usize| ball.center - ball.feet[side].point);
             let out = along.project_onto(a.cross(b)).normalize_or(along.normalize_or_zero());
-            profile_points(self.profile, &ball, ball.feet.map(|f| f.point), self.fineness, &mut row);
+            profile_points(&self.profiles[dart.curve], &ball, ball.feet.map(|f| f.point), self.fineness, &mut row);
             // Seen from behind the profile, so that points which are already through are noticed.
             let behind = 3.0 * radius;
             // The feet are on the edge of that surface, and are found there.

@@ -6,7 +6,7 @@
 //! | `vicinity.rs` | the part of a large mesh that the blend is made on |
 //! | `auto.rs` | which curves are swept and which are blended as a field |
 //! | `limit.rs` | the largest radius that fits |
-//! | `radii.rs` | how the radius varies along a curve and between its sides |
+//! | `radii.rs`, `profiles.rs` | how radius and cross-section vary along a curve, and the radius between its sides |
 //! | `mends.rs` | what has been done so far to make the blend fit |
 //! | `rolling.rs` | a ball rolled along every curve |
 //! | `network.rs` | the nodes at which open curves meet or end |
@@ -36,6 +36,7 @@ mod linkage;
 mod mends;
 mod network;
 mod plate;
+mod profiles;
 mod radii;
 mod rolling;
 mod sew;
@@ -55,6 +56,7 @@ use mends::Mends;
 use mesh_core::{Cancelled, Connected, FaceId, Faces, NotManifold, Origins, Positions, TriMesh, VertexId, Watch};
 use network::Network;
 use profile_nurbs::Profile;
+use profiles::Profiles;
 pub use radii::Radii;
 use rolling::{REACH_AHEAD, roll_missing, step_length};
 use sew::{between, sew};
@@ -74,6 +76,9 @@ pub struct Params {
     pub radii: Radii,
     /// Cross-section of the blend.
     pub profile: Profile,
+    /// Places and the cross-section there, as for the keys of [`Radii`]; `profile` is the one away from them. In between
+    /// the two are mixed point by point.
+    pub profile_at: Vec<(DVec3, Profile)>,
     /// Distance of the apex from the ball's centre in radii, if it is moved out along its line; see
     /// [`profile_nurbs::Section::with_reach`]. The blend then meets the surfaces at an angle.
     pub reach: Option<f64>,
@@ -125,12 +130,18 @@ pub enum Overlap {
 }
 
 impl Params {
+    /// Whether any cross-section is of a kind.
+    pub(crate) fn uses(&self, kind: &Profile) -> bool {
+        self.profile == *kind || self.profile_at.iter().any(|k| k.1 == *kind)
+    }
+
     /// An arc of radius `radius`, made smaller where it does not fit.
     pub fn new(radius: f64) -> Self {
         Self {
             radius,
             radii: Radii::default(),
             profile: Profile::Arc,
+            profile_at: Vec::new(),
             reach: None,
             overlap: Overlap::default(),
             solver: Solver::Contact,
@@ -365,11 +376,12 @@ fn assemble(
 ) -> Result<Blended, Trouble> {
     let fineness =
         Fineness { tolerance: params.tolerance, chord: step, reach: params.reach, sides: params.radii.sides };
-    let ends = Ends { mesh, curves, network, profile: &params.profile, fineness };
+    let profiles = Profiles::of(mesh, curves, params);
+    let ends = Ends { mesh, curves, network, profiles: &profiles, fineness };
     let layout = ends.lay_out(rails, &distinct(rails, step))?;
-    for (curve, stretch) in curves.iter().zip(&layout.stretches) {
+    for ((curve, stretch), profiles) in curves.iter().zip(&layout.stretches).zip(&profiles) {
         if let Some(stretch) = stretch {
-            params.sketch.page(mesh, curve).stretch(stretch, &params.profile, fineness);
+            params.sketch.page(mesh, curve).stretch(stretch, profiles, fineness);
         }
     }
     let opened = cut_linkages(mesh, network, &layout, params.snap, params.radius, watch)?;
@@ -381,7 +393,7 @@ fn assemble(
         let first = first_new + new_points.len() as u32;
         let sweep_along = |stretch| {
             let (linkages, stops) = (&opened.linkages[i], &opened.stops[i]);
-            sweep(stretch, linkages, stops, &params.profile, fineness, first, |v| cut.position(v))
+            sweep(stretch, linkages, stops, &profiles[i], fineness, first, |v| cut.position(v))
         };
         let strip = stretch.as_ref().map(sweep_along);
         if let Some(strip) = &strip {

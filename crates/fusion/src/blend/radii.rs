@@ -46,16 +46,10 @@ impl Radii {
 
     /// The field of each curve.
     pub(crate) fn fields(&self, mesh: &Connected<TriMesh>, curves: &[BlendCurve], radius: f64) -> Vec<RadiusField> {
-        let mut own: Vec<Vec<(DVec3, f64)>> = vec![vec![]; curves.len()];
-        for &(place, share) in &self.keys {
-            let distance = |c: &BlendCurve| distance_to(&chain(mesh, c), c.closed, place);
-            let nearest = curves.iter().map(distance).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-            if let Some((i, _)) = nearest {
-                own[i].push((place, share));
-            }
-        }
+        let own = of_nearest(mesh, curves, self.keys.iter().map(|k| k.0));
         let plain = RadiusField { sides: self.sides, ..RadiusField::constant(radius) };
-        let field = |(curve, keys): (&BlendCurve, Vec<(DVec3, f64)>)| {
+        let field = |(curve, own): (&BlendCurve, Vec<usize>)| {
+            let keys: Vec<_> = own.into_iter().map(|k| self.keys[k]).collect();
             let law = if keys.is_empty() { None } else { Law::new(chain(mesh, curve), curve.closed, &keys, self.rest) };
             match law {
                 Some(law) => RadiusField { law: Some(Arc::new(law)), ..plain.clone() },
@@ -66,8 +60,25 @@ impl Radii {
     }
 }
 
+/// For each curve, which of some places are nearer to it than to any other.
+pub(super) fn of_nearest(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    places: impl Iterator<Item = DVec3>,
+) -> Vec<Vec<usize>> {
+    let mut own = vec![vec![]; curves.len()];
+    for (k, place) in places.enumerate() {
+        let distance = |c: &BlendCurve| distance_to(&chain(mesh, c), c.closed, place);
+        let nearest = curves.iter().map(distance).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((i, _)) = nearest {
+            own[i].push(k);
+        }
+    }
+    own
+}
+
 /// The points of a curve, the last of an open one included.
-fn chain(mesh: &Connected<TriMesh>, curve: &BlendCurve) -> Vec<DVec3> {
+pub(super) fn chain(mesh: &Connected<TriMesh>, curve: &BlendCurve) -> Vec<DVec3> {
     let mut points = curve.points(mesh);
     points.extend(curve.halfedges.last().filter(|_| !curve.closed).map(|&h| mesh.position(mesh.head(h))));
     points

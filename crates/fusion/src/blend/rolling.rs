@@ -67,7 +67,7 @@ pub(super) fn roll_missing(
         match rolled {
             None => {}
             Some(Ok(mut r)) => {
-                if params.profile == Profile::G2 {
+                if params.uses(&Profile::G2) {
                     r.measure_bends(mesh);
                 }
                 params.sketch.page(mesh, curve).rail(mesh, &r);

@@ -1,12 +1,12 @@
 //! What the stages of a blend draw for whoever wants to look: curves and meshes, above all where a blend is refused.
 
+use super::profiles::Profiles;
 use super::stretch::Stretch;
 use super::strip::{Fineness, Piece, profile_points};
 use super::trouble::Trouble;
 use glam::DVec3;
 use mesh_core::{Connected, FaceId, Faces, Positions, TriMesh, VertexId};
 use mesh_io::{Format, Model};
-use profile_nurbs::Profile;
 use spine::{BlendCurve, Halt, Patch, Rail, Sample};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -200,12 +200,12 @@ impl Page<'_> {
     }
 
     /// A rail cut to length, and its profiles as they are before they are sewn on.
-    pub fn stretch(&self, stretch: &Stretch, profile: &Profile, fineness: Fineness) {
+    pub fn stretch(&self, stretch: &Stretch, profiles: &Profiles, fineness: Fineness) {
         self.way(&stretch.rail);
         self.draw("profiles", || {
             let row = |s: &Sample| {
                 let mut row = Vec::new();
-                profile_points(profile, s, s.feet.map(|f| f.point), fineness, &mut row);
+                profile_points(profiles, s, s.feet.map(|f| f.point), fineness, &mut row);
                 (row, false)
             };
             Drawing::Lines(stretch.rail.samples.iter().map(row).collect())

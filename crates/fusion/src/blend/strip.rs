@@ -1,10 +1,11 @@
 //! The swept surface as triangles: profiles across, cells between neighbouring profiles, sewn to the linkages' vertices.
 
 use super::linkage::Linkage;
+use super::profiles::Profiles;
 use super::stretch::{Ending, Stretch};
 use glam::DVec3;
 use mesh_core::VertexId;
-use profile_nurbs::{Profile, Section};
+use profile_nurbs::Section;
 use spine::{Convexity, Sample};
 
 /// How finely the sweep is tessellated.
@@ -51,12 +52,12 @@ impl Columns {
     }
 }
 
-/// Sweeps `profile` along a stretch. `linkages` and `stops` hold the vertices around it, `position` places them.
+/// Sweeps `profiles` along a stretch. `linkages` and `stops` hold the vertices around it, `position` places them.
 pub(crate) fn sweep(
     stretch: &Stretch,
     linkages: &[Linkage; 2],
     stops: &[Vec<VertexId>; 2],
-    profile: &Profile,
+    profiles: &Profiles,
     fineness: Fineness,
     first_new: u32,
     position: impl Fn(VertexId) -> DVec3,
@@ -68,7 +69,7 @@ pub(crate) fn sweep(
         match stretch.station(i) {
             Ok(ball) => {
                 let feet = [0, 1].map(|side| linkages[side].foot(i));
-                profile_points(profile, ball, feet.map(&position), fineness, &mut row);
+                profile_points(profiles, ball, feet.map(&position), fineness, &mut row);
                 columns.vertices.push(feet[0]);
                 let first = first_new + strip.piece.points.len() as u32;
                 let inner = row.len() - 2;
@@ -110,7 +111,7 @@ pub(crate) fn sweep(
 
 /// Points of one profile, feet included.
 pub(crate) fn profile_points(
-    profile: &Profile,
+    profiles: &Profiles,
     ball: &Sample,
     feet: [DVec3; 2],
     fineness: Fineness,
@@ -124,7 +125,7 @@ pub(crate) fn profile_points(
     let widest = 2.0 * (1.0 - fineness.tolerance.clamp(1e-9, 0.5)).acos();
     // Two at least, so that a profile next to a tip has a side for each linkage.
     let count = (bend / widest).ceil().max((bend * ball.radius / fineness.chord).round()).clamp(2.0, 4096.0);
-    profile.points(&section, count as usize, row);
+    profiles.points(ball.center, &section, count as usize, row);
 }
 
 /// The control triangle of the profile in the plane of ball centre and feet.

@@ -1,6 +1,6 @@
 //! How a ball is rolled, in recipes: the keys that blends and booleans share.
 
-use super::tables::{BallRadius, Blend, Boolean, RadiusAt};
+use super::tables::{BallRadius, Blend, Boolean, ProfileAt, RadiusAt};
 use super::values::{Length, profile};
 use super::{Error, Recipe};
 use crate::{blend, picked_from_text};
@@ -13,6 +13,7 @@ use toml::Spanned;
 struct Keys<'a> {
     radius: &'a Spanned<BallRadius>,
     radius_at: &'a [Spanned<RadiusAt>],
+    profile_at: &'a [Spanned<ProfileAt>],
     profile: &'a Option<Spanned<String>>,
     overlap: &'a Option<Spanned<String>>,
     surface: &'a Option<Spanned<String>>,
@@ -28,6 +29,7 @@ macro_rules! keys {
         Keys {
             radius: $radius,
             radius_at: &$table.radius_at,
+            profile_at: &$table.profile_at,
             profile: &$table.profile,
             overlap: &$table.overlap,
             surface: &$table.surface,
@@ -76,20 +78,26 @@ impl Recipe {
             BallRadius::One(r) => [length(r, keys.radius.span())?; 2],
             BallRadius::Two([left, right]) => [length(left, keys.radius.span())?, length(right, keys.radius.span())?],
         };
+        let place = |at: [f64; 3], span: std::ops::Range<usize>| match DVec3::from(at) {
+            place if place.is_finite() => Ok(place),
+            _ => Err(self.error(span, "a place is three finite numbers")),
+        };
         let mut at = vec![];
         for key in keys.radius_at {
-            let place = DVec3::from(key.get_ref().at);
-            if !place.is_finite() {
-                return Err(self.error(key.span(), "a place is three finite numbers"));
-            }
-            at.push((place, length(&key.get_ref().radius, key.span())?));
+            at.push((place(key.get_ref().at, key.span())?, length(&key.get_ref().radius, key.span())?));
         }
         let (radius, radii) = blend::Radii::of(sides, &at);
         let mut params = blend::Params { radii, ..blend::Params::new(radius) };
+        let profile = |text: &str, span: std::ops::Range<usize>| {
+            let message = "a profile is arc, g2, chamfer, sharp, hermite, or conic=W with W of 0 or more";
+            profile(text).ok_or_else(|| self.error(span, message))
+        };
         if let Some(text) = keys.profile {
-            params.profile = profile(text.get_ref()).ok_or_else(|| {
-                self.error(text.span(), "a profile is arc, g2, chamfer, sharp, hermite, or conic=W with W of 0 or more")
-            })?;
+            params.profile = profile(text.get_ref(), text.span())?;
+        }
+        for key in keys.profile_at {
+            let here = place(key.get_ref().at, key.span())?;
+            params.profile_at.push((here, profile(&key.get_ref().profile, key.span())?));
         }
         if let Some(text) = keys.overlap {
             params.overlap = match text.get_ref().as_str() {

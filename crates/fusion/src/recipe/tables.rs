@@ -204,6 +204,9 @@ pub struct Boolean {
     #[serde(default)]
     pub radius_at: Vec<Spanned<RadiusAt>>,
     /// As for a blend.
+    #[serde(default)]
+    pub profile_at: Vec<Spanned<ProfileAt>>,
+    /// As for a blend.
     pub profile: Option<Spanned<String>>,
     /// As for a blend.
     pub overlap: Option<Spanned<String>>,
@@ -298,6 +301,9 @@ pub struct Blend {
     /// Radii at places, between which it changes smoothly.
     #[serde(default)]
     pub radius_at: Vec<Spanned<RadiusAt>>,
+    /// Cross-sections at places, between which one changes smoothly into the next.
+    #[serde(default)]
+    pub profile_at: Vec<Spanned<ProfileAt>>,
     /// Least angle of a feature curve, in degrees; 40 where left out.
     pub angle: Option<Spanned<f64>>,
     /// Only the feature curves nearest to these points.
@@ -332,6 +338,16 @@ pub enum BallRadius {
     One(Length),
     /// From the left side and from the right one.
     Two([Length; 2]),
+}
+
+/// A cross-section at the place of a curve nearest to a point.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProfileAt {
+    /// The point.
+    pub at: DVec3Array,
+    /// The cross-section there, as for a blend.
+    pub profile: String,
 }
 
 /// A radius at the place of a curve nearest to a point.

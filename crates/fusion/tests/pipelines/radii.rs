@@ -1,4 +1,5 @@
-//! Radii that vary along an edge, and from one side of it to the other, against the surfaces known for a cube.
+//! Radii and profiles that vary along an edge, and radii from one side of it to the other, against the surfaces known for a
+//! cube.
 
 use fusion::blend::{Blended, Error, Overlap, Params, Radii, blend, max_radius};
 use fusion::features::{self, feature_curves, nearest_curve};
@@ -132,4 +133,36 @@ fn the_radii_of_a_star_are_listed_in_seconds() {
         let exact = max_radius(&star, &[alone], &Params::new(1.0), &Watch::default()).unwrap().radius;
         assert!(limit.as_ref().is_some_and(|l| (l.radius / exact - 1.0).abs() < 0.01), "{exact}, {limit:?}");
     }
+}
+
+/// Along an edge of a cube the profiles at the keys are exact, and between them points move evenly from one to the other: of
+/// an arc and its chord every mixture is known.
+#[test]
+fn a_profile_keyed_in_the_middle_is_mixed_with_the_one_at_the_ends() {
+    let mesh = Connected::new(shapes::cuboid(DVec3::ONE)).unwrap();
+    let middle = DVec3::new(0.0, 0.5, 0.5);
+    let params = Params {
+        profile_at: vec![(middle, fusion::Profile::Chamfer)],
+        overlap: Overlap::Error,
+        tolerance: 1e-4,
+        snap: 0.0,
+        ..Params::new(0.2)
+    };
+    let done = blend(&mesh, &edges(&mesh)[..1], &params, &Watch::default()).unwrap();
+    let found = mesh_core::validate(&done.mesh);
+    assert!(found.is_manifold() && found.is_closed(), "{found:?}");
+    let mut seen = [0; 2];
+    for p in new_points(&done).filter(|p| p.x.abs() < 0.49) {
+        // Along the diagonal of the cross-section: 0 on the chord, 1 on the arc at the profile's middle.
+        let (y, z) = (p.y - 0.3, p.z - 0.3);
+        if (y - z).abs() > 1e-9 {
+            continue;
+        }
+        let stands = ((y + z) / 2f64.sqrt() - 0.2 / 2f64.sqrt()) / (0.2 - 0.2 / 2f64.sqrt());
+        let t = 1.0 - (p.x / 0.5).abs();
+        let chamfered = t * t * (3.0 - 2.0 * t);
+        assert!((stands - (1.0 - chamfered)).abs() < 1e-9, "{p}: {stands} {chamfered}");
+        seen[usize::from(chamfered > 0.5)] += 1;
+    }
+    assert!(seen[0] > 2 && seen[1] > 2, "{seen:?}");
 }

@@ -59,7 +59,7 @@ pub(crate) fn serves(curves: &[BlendCurve], params: &Params) -> bool {
 }
 
 fn is_arc(params: &Params) -> bool {
-    matches!(params.profile, Profile::Arc) && params.reach.is_none()
+    matches!(params.profile, Profile::Arc) && params.profile_at.is_empty() && params.reach.is_none()
 }
 
 /// Half the length over which linkages are evened out, and how far their points may be moved to spare slivers, in radii.

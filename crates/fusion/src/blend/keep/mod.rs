@@ -83,6 +83,9 @@ fn blend_level(
     watch: &Watch,
 ) -> Result<Blended, Error> {
     params.sketch.begin(mesh, curves);
+    if let Some(&(at, _)) = params.profile_at.first() {
+        return Err(Refusal::KeyedProfiles { at }.into());
+    }
     let rails = roll_all(mesh, curves, params, how)?;
     watch.step("blend", 0.3)?;
     let mut regions = Vec::with_capacity(curves.len());
@@ -158,7 +161,7 @@ fn roll_all(
         // Heights fall as the square of the step.
         let refined = (chord_height(&rail) / wanted).sqrt();
         let mut rail = if refined > 1.0 { with_step(step / refined.min(FINEST))? } else { rail };
-        if params.profile == profile_nurbs::Profile::G2 {
+        if params.uses(&profile_nurbs::Profile::G2) {
             rail.measure_bends(mesh);
         }
         params.sketch.page(mesh, curve).rail(mesh, &rail);

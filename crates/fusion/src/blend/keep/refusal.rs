@@ -14,6 +14,14 @@ pub enum Refusal {
         /// Why.
         source: profile_nurbs::Error,
     },
+    /// The cross-section varies.
+    #[error(
+        "the profile asked for at {at} cannot be kept apart from the others; give one profile, or take the surface `stitch`"
+    )]
+    KeyedProfiles {
+        /// Where.
+        at: DVec3,
+    },
     /// The region has an edge of the mesh in it.
     #[error("the blend reaches the boundary of the mesh at {at}; take a smaller radius, or the surface `stitch`")]
     Boundary {
@@ -118,7 +126,8 @@ impl Refusal {
     /// Where it happened, in model units.
     pub fn place(&self) -> DVec3 {
         match *self {
-            Self::Profile { at, .. }
+            Self::KeyedProfiles { at }
+            | Self::Profile { at, .. }
             | Self::Boundary { at }
             | Self::NotARing { at, .. }
             | Self::Pinched { at, .. }
