@@ -1,6 +1,6 @@
 """The same inputs through this program and through packaged peers, as a Markdown table.
 
-usage: cargo xtask bench --peers, or: python3 xtask/peers.py PROGRAM
+usage: cargo xtask bench --peers, or: python3 xtask/peers.py PROGRAM FIT, the second rbf-solve's example of that name
 
 Each job runs three times and the best counts. Wall-clock time means little on a busy machine, so processor seconds of all
 threads are given as well: of a peer from arrays to arrays, of ours of the whole program with reading, checking and writing, so
@@ -82,7 +82,11 @@ class Table:
         ours = {job: cpu for job, name, _, cpu, _ in self.rows if name == "fusion"}
         print("| job | program | clock | processor | processor, ours = 1 | |\n|---|---|---|---|---|---|")
         for job, name, wall, cpu, note in self.rows:
-            figures = ["", "", ""] if wall is None else [f"{1e3 * wall:.0f} ms", f"{1e3 * cpu:.0f} ms", f"{cpu / ours[job]:.1f}"]
+            figures = ["", "", ""]
+            if wall is not None:
+                figures[0] = f"{1e3 * wall:.0f} ms"
+            if cpu is not None:
+                figures[1:] = [f"{1e3 * cpu:.0f} ms", f"{cpu / ours[job]:.1f}"]
             print("| " + " | ".join([job, name, *figures, note]) + " |")
 
 
@@ -195,11 +199,44 @@ def remeshing(table):
     table.peer(job, "trueform", trueform)
 
 
+def fields(table):
+    """Constraints on a bumpy ball and off it, and points around it to evaluate at."""
+    golden = np.pi * (3 - 5**0.5)
+    for kernel, ours in (("linear", "biharmonic"), ("cubic", "triharmonic")):
+        for count, evaluated in ((3_000, 100_000), (10_000, 20_000)):
+            i = np.arange(count // 2)
+            z = 1 - (4 * i + 2) / count
+            s = np.sqrt(1 - z * z)
+            d = np.stack([s * np.cos(golden * i), s * np.sin(golden * i), z], -1)
+            on = d * (1 + 0.1 * np.sin(5 * d[:, :1]) * np.cos(4 * d[:, 1:2]))
+            tau = 0.1 * (12 / count) ** 0.5
+            places, values = np.vstack([on, on + tau * d]), np.repeat([0.0, tau], count // 2)
+            points = np.random.default_rng(1).uniform(-1.2, 1.2, (evaluated, 3))
+            np.hstack([places, values[:, None]]).tofile(table.path("constraints"))
+            points.tofile(table.path("points"))
+            call = [sys.argv[2], ours, table.path("constraints"), table.path("points")]
+            fit, values_at = (f"{what} of {count:,} constraints, {ours}" for what in ("fit", f"{evaluated:,} values"))
+            runs = [json.loads(subprocess.run(call, check=True, capture_output=True).stdout) for _ in range(ROUNDS)]
+            for job, stage in ((fit, "fit"), (values_at, "evaluate")):
+                note = f"residual {runs[0]['residual']:.0e} of the box" if stage == "fit" else ""
+                table.rows.append((job, "fusion", min(r[stage] for r in runs), None, note))
+            if count > 3_000 and kernel == "cubic":
+                continue  # Minutes, and nothing new.
+            from scipy.interpolate import RBFInterpolator
+
+            since = time.perf_counter()
+            made = RBFInterpolator(places, values, kernel=kernel, degree=1)
+            table.rows.append((fit, "scipy " + importlib.metadata.version("scipy"), time.perf_counter() - since, None, "once"))
+            since = time.perf_counter()
+            made(points)
+            table.rows.append((values_at, "scipy " + importlib.metadata.version("scipy"), time.perf_counter() - since, None, "once"))
+
+
 def main():
     print(f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, {time.strftime('%Y-%m-%d')}.\n")
     with tempfile.TemporaryDirectory() as folder:
         table = Table(sys.argv[1], folder)
-        for jobs in (reading, booleans, remeshing):
+        for jobs in (reading, booleans, remeshing, fields):
             jobs(table)
         table.print()
 

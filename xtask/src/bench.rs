@@ -5,10 +5,12 @@ use clap::Args;
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
-use std::process::Command;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
 
 /// The table stands between these lines of the page; the rest is written by hand.
 const MARKS: [&str; 2] = ["<!-- table: written by cargo xtask bench -->", "<!-- end of table -->"];
+const SCALING: [&str; 2] = ["<!-- scaling: written by cargo xtask bench --scaling -->", "<!-- end of scaling -->"];
 const PEERS: [&str; 2] = ["<!-- peers: written by cargo xtask bench --peers -->", "<!-- end of peers -->"];
 
 /// What to run.
@@ -17,25 +19,42 @@ pub struct Options {
     /// Run the same jobs through this program and through the Python packages that are there, instead of the benchmarks
     #[arg(long)]
     peers: bool,
+    /// Measure time and memory against size instead, and draw both into docs/images
+    #[arg(long, conflicts_with = "peers")]
+    scaling: bool,
 }
 
-/// Runs `cargo bench`, or the peers, and renews the table.
+/// Runs `cargo bench`, or a script, and renews its table.
 pub fn run(options: &Options) -> Result<(), Fault> {
-    if options.peers { peers() } else { benchmarks() }
+    let program = |name: &str| root().join("target/release").join(name).with_extension(std::env::consts::EXE_EXTENSION);
+    if options.peers {
+        build(&["-p", "fusion-cli"])?;
+        build(&["-p", "rbf-solve", "--example", "fit"])?;
+        renew(PEERS, &script("peers.py", &[program("fusion-cli"), program("examples/fit")])?)
+    } else if options.scaling {
+        build(&["-p", "fusion-cli"])?;
+        renew(SCALING, &script("scaling.py", &[program("fusion-cli"), root().join("docs/images")])?)
+    } else {
+        benchmarks()
+    }
 }
 
-fn peers() -> Result<(), Fault> {
-    let built =
-        Command::new(env!("CARGO")).args(["build", "--release", "-p", "fusion-cli"]).current_dir(root()).status()?;
-    if !built.success() {
-        return Err("fusion-cli does not build".into());
-    }
-    let program = root().join("target/release/fusion-cli").with_extension(std::env::consts::EXE_EXTENSION);
-    let output = Command::new("python3").arg(root().join("xtask/peers.py")).arg(program).output()?;
+fn build(what: &[&str]) -> Result<(), Fault> {
+    let built = Command::new(env!("CARGO")).args(["build", "--release"]).args(what).current_dir(root()).status()?;
+    if built.success() { Ok(()) } else { Err(format!("cargo build {} failed", what.join(" ")).into()) }
+}
+
+/// What a script of this folder prints.
+fn script(name: &str, arguments: &[PathBuf]) -> Result<String, Fault> {
+    let output = Command::new("python3")
+        .arg(root().join("xtask").join(name))
+        .args(arguments)
+        .stderr(Stdio::inherit())
+        .output()?;
     if !output.status.success() {
-        return Err(format!("peers.py failed: {}", String::from_utf8_lossy(&output.stderr)).into());
+        return Err(format!("{name} failed").into());
     }
-    renew(PEERS, &String::from_utf8_lossy(&output.stdout))
+    Ok(String::from_utf8(output.stdout)?)
 }
 
 fn benchmarks() -> Result<(), Fault> {

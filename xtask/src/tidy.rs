@@ -57,6 +57,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "clap_mangen",
             "ctrlc",
             "indicatif",
+            "mimalloc",
             "serde_json",
             "tempfile",
         ],

@@ -42,36 +42,39 @@ impl Rail {
         for (here, next) in pairs(&self.samples, self.closed) {
             at.push(at[at.len() - 1] + here.advance(next));
         }
-        let n = self.samples.len();
-        let around = self.closed.then(|| at[n]);
-        for i in 0..n {
-            let reach = ALONG * self.samples[i].radius;
-            for side in 0..2 {
-                let (mut sum, mut weight) = (0.0, 0.0);
-                let mut add = |k: usize, distance: f64| {
-                    if let Some(bend) = measured[k][side] {
-                        sum += (reach - distance) * bend;
-                        weight += reach - distance;
-                    }
-                };
-                add(i, 0.0);
-                for forwards in [true, false] {
-                    for j in 1..n {
-                        let k = if forwards { i + j } else { n + i - j } % n;
-                        let wrapped = if forwards { k < i } else { k > i };
-                        let Some(way) = (if wrapped { around } else { Some(0.0) }) else { break };
-                        let distance = if forwards { way + at[k] - at[i] } else { way + at[i] - at[k] };
-                        if distance >= reach {
-                            break;
-                        }
-                        add(k, distance);
-                    }
-                }
-                let [least, most] = BENDS.map(|b| b / self.samples[i].radius);
-                self.samples[i].bends[side] = if weight > 0.0 { (sum / weight).clamp(least, most) } else { 0.0 };
-            }
+        for (i, sample) in self.samples.iter_mut().enumerate() {
+            let near = neighbours(&at, self.closed, i, ALONG * sample.radius);
+            let [least, most] = BENDS.map(|b| b / sample.radius);
+            sample.bends = [0, 1].map(|side: usize| {
+                let known = near.iter().filter_map(|&(k, weight)| Some((measured[k][side]?, weight)));
+                let (sum, weight) = known.fold((0.0, 0.0), |(s, w), (bend, weight)| (s + weight * bend, w + weight));
+                if weight > 0.0 { (sum / weight).clamp(least, most) } else { 0.0 }
+            });
         }
     }
+}
+
+/// The samples within `reach` of the `i`-th, with weights that fall evenly with the distance. `at` holds the lengths up to
+/// each sample, and of a closed rail the whole length last.
+fn neighbours(at: &[f64], closed: bool, i: usize, reach: f64) -> Vec<(usize, f64)> {
+    let n = if closed { at.len() - 1 } else { at.len() };
+    let mut near = vec![(i, reach)];
+    for forwards in [true, false] {
+        for j in 1..n {
+            let k = if forwards { i + j } else { n + i - j } % n;
+            let beyond_end = (k < i) == forwards;
+            if beyond_end && !closed {
+                break;
+            }
+            let way = (at[k] - at[i]).abs();
+            let distance = if beyond_end { at[n] - way } else { way };
+            if distance >= reach {
+                break;
+            }
+            near.push((k, reach - distance));
+        }
+    }
+    near
 }
 
 /// The section of a side by the plane of a ball and its feet: straight pieces with their directions.

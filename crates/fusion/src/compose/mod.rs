@@ -243,7 +243,7 @@ fn attempt(
     check_pieces(meshes, openings, &made, &mut report)?;
     let Welded { mesh, origins } = report.time("weld", || weld(meshes, own, openings, &made));
     let promise = if params.loops.is_none() { Promise::Openings(0) } else { Promise::Manifold };
-    let finished = finish_as(promise, &parts[..], mesh.clone(), origins.clone(), params.format, report, watch);
+    let finished = finish_as(promise, parts, mesh.clone(), origins.clone(), params.format, report, watch);
     finished.map(|outcome| named(outcome, params.format)).map_err(|e| match e {
         crate::Error::Invalid(invalid) if invalid.format.is_none() => match name_crossing(&mesh, &origins, watch) {
             Some(crossing) => crossing.into(),

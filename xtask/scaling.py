@@ -1,0 +1,170 @@
+"""Time and memory of the program against the size of its input, as pictures in docs/images and a Markdown table.
+
+usage: cargo xtask bench --scaling, or: python3 xtask/scaling.py PROGRAM IMAGES
+"""
+
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+LIMIT = 200.0  # seconds, beyond which a job and all larger ones are left out
+TRIANGLES = [1_000, 4_000, 16_000, 64_000, 256_000, 1_000_000, 4_000_000]
+LOOPS = [60, 250, 1_000, 4_000, 12_000, 24_000]
+COLORS = ["#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b"]
+
+
+def write(path, points, faces):
+    head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n"
+    head += "".join(f"property double {axis}\n" for axis in "xyz")
+    head += f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+    rows = np.empty(len(faces), dtype=[("n", "u1"), ("v", "<i4", 3)])
+    rows["n"], rows["v"] = 3, faces
+    with open(path, "wb") as out:
+        out.write(head.encode() + points.astype("<f8").tobytes() + rows.tobytes())
+
+
+def grid(m, n, wrapped):
+    """Triangles between m rings of n points, the last joined to the first if `wrapped`."""
+    i, j = np.meshgrid(np.arange(m if wrapped else m - 1), np.arange(n), indexing="ij")
+    a, b = i * n + j, i * n + (j + 1) % n
+    c, d = (i + 1) % m * n + j, (i + 1) % m * n + (j + 1) % n
+    return np.stack([np.stack([a, b, d], -1), np.stack([a, d, c], -1)], 2).reshape(-1, 3)
+
+
+def torus(triangles, shift):
+    m = round(math.sqrt(triangles / 4))
+    n = 2 * m
+    s, t = np.meshgrid(2 * np.pi * (np.arange(n) + 0.3) / n, 2 * np.pi * np.arange(m) / m, indexing="xy")
+    around = 1 + 0.4 * np.cos(t)
+    points = np.stack([around * np.cos(s), around * np.sin(s), 0.4 * np.sin(t)], -1).reshape(-1, 3)
+    return points + shift, grid(m, n, True)
+
+
+def tube(n, base, up):
+    rings = 6
+    s, k = np.meshgrid(2 * np.pi * np.arange(n) / n, np.arange(rings), indexing="xy")
+    points = np.stack([np.cos(s), np.sin(s), base + up * k * 2 * np.pi / n], -1).reshape(-1, 3)
+    faces = grid(rings, n, False)
+    return points, faces if up > 0 else faces[:, ::-1]
+
+
+def run(program, arguments):
+    """Seconds, peak mebibytes and the report; None if the job fails or takes too long."""
+    with tempfile.NamedTemporaryFile(suffix=".json") as report:
+        since = time.perf_counter()
+        child = subprocess.Popen([program, *arguments, "--report", report.name, "--quiet"], stderr=subprocess.DEVNULL)
+        while True:
+            pid, status, usage = os.wait4(child.pid, os.WNOHANG)
+            if pid:
+                break
+            if time.perf_counter() - since > LIMIT:
+                child.kill()
+                os.wait4(child.pid, 0)
+                return None
+            time.sleep(0.0005)
+        seconds = time.perf_counter() - since
+        return (seconds, usage.ru_maxrss / 1024, json.load(open(report.name))) if status == 0 else None
+
+
+def triangles(program, folder):
+    """For each verb: (triangles, seconds, mebibytes)."""
+    a, b, out = (os.path.join(folder, name) for name in ("a.ply", "b.ply", "out.ply"))
+    verbs = {
+        "blend, one seam": ["union", a, b, "-o", out, "--radius", "1%"],
+        "union": ["union", a, b, "-o", out],
+        "remesh": ["remesh", a, "-o", out],
+        "cut": ["cut", a, "-o", out, "--plane", "0.1,0,0,1,0.2,0.1"],
+        "features": ["features", a, "--no-radii"],
+    }
+    found = {verb: [] for verb in verbs}
+    for size in TRIANGLES:
+        for path, shift in ((a, 0.0), (b, np.array([0.9, 0.35, 0.2]))):
+            points, faces = torus(size, shift)
+            write(path, points, faces)
+        for verb, arguments in list(verbs.items()):
+            made = run(program, arguments)
+            if made is None:
+                del verbs[verb]
+                print(f"{verb} of {size}: none", file=sys.stderr)
+                continue
+            count = len(faces) * (2 if verb in ("blend, one seam", "union") else 1)
+            found[verb].append((count, made[0], made[1]))
+    return found
+
+
+def constraints(program, folder):
+    """For each stage of joining two tubes: (constraints, seconds, mebibytes of the whole)."""
+    a, b, out = (os.path.join(folder, name) for name in ("a.ply", "b.ply", "out.ply"))
+    found = {"fit": [], "all stages": []}
+    for n in LOOPS:
+        write(a, *tube(n, -0.4, -1))
+        write(b, *tube(n, 0.4, 1))
+        # The transition's own triangles do not grow with the constraints: the field alone is measured.
+        made = run(program, ["compose", a, b, "-o", out, "--edge-length", "0.05"])
+        if made is None:
+            print(f"compose of {n}: none", file=sys.stderr)
+            break
+        count, stages = made[2]["figures"]["constraints"], made[2]["stages"]
+        found["fit"].append((count, sum(s["milliseconds"] for s in stages if s["name"] == "fit") / 1e3, made[1]))
+        found["all stages"].append((count, made[0], made[1]))
+    return found
+
+
+def plot(path, title, along, up, curves):
+    """Curves over logarithmic axes, as SVG."""
+    wide, high, left, low = 640, 400, 70, 50
+    flat = [p for points in curves.values() for p in points]
+    spans = [(math.floor(math.log10(min(v))), math.ceil(math.log10(max(v)))) for v in zip(*flat)]
+    def place(value, span, size, start):
+        return start + size * (math.log10(value) - span[0]) / max(span[1] - span[0], 1)
+    x = lambda v: place(v, spans[0], wide - left - 170, left)
+    y = lambda v: high - low - place(v, spans[1], high - low - 40, 0)
+    svg = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" font-family="sans-serif" font-size="12">',
+           f'<rect width="{wide}" height="{high}" fill="white"/><text x="{left}" y="20" font-size="14">{title}</text>']
+    for axis, span in enumerate(spans):
+        for power in range(span[0], span[1] + 1):
+            value, label = 10.0**power, f'10<tspan dy="-5" font-size="9">{power}</tspan>'
+            if axis == 0:
+                svg.append(f'<path d="M{x(value):.1f} 35V{high - low}" stroke="#ddd"/>'
+                           f'<text x="{x(value):.1f}" y="{high - low + 18}" text-anchor="middle">{label}</text>')
+            else:
+                svg.append(f'<path d="M{left} {y(value):.1f}H{wide - 170}" stroke="#ddd"/>'
+                           f'<text x="{left - 8}" y="{y(value) + 4:.1f}" text-anchor="end">{label}</text>')
+    svg.append(f'<text x="{(left + wide - 170) / 2}" y="{high - 12}" text-anchor="middle">{along}</text>'
+               f'<text transform="translate(16 {high / 2}) rotate(-90)" text-anchor="middle">{up}</text>')
+    for k, (name, points) in enumerate(curves.items()):
+        way = " ".join(f"{x(p):.1f},{y(q):.1f}" for p, q in points)
+        svg.append(f'<polyline points="{way}" fill="none" stroke="{COLORS[k]}" stroke-width="2"/>')
+        svg.extend(f'<circle cx="{x(p):.1f}" cy="{y(q):.1f}" r="3" fill="{COLORS[k]}"/>' for p, q in points)
+        svg.append(f'<text x="{wide - 160}" y="{50 + 20 * k}" fill="{COLORS[k]}">{name}</text>')
+    with open(path, "w") as out:
+        out.write("\n".join(svg) + "\n</svg>\n")
+
+
+def table(head, found):
+    print(f"\n| {head} | seconds / peak MiB at each size |\n|---|---|")
+    for name, rows in found.items():
+        print(f"| {name} | " + ", ".join(f"{n:,.0f}: {s:.2g} / {m:.0f}" for n, s, m in rows) + " |")
+
+
+def main():
+    program, images = sys.argv[1:]
+    print(f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, {time.strftime('%Y-%m-%d')}; whole program.")
+    with tempfile.TemporaryDirectory() as folder:
+        for file, title, along, found in [
+            ("scaling", "Torus, or two of them", "triangles in", triangles(program, folder)),
+            ("scaling-constraints", "Two tubes joined", "constraints", constraints(program, folder)),
+        ]:
+            table(along, found)
+            curves = lambda k: {name: [(r[0], r[k]) for r in rows] for name, rows in found.items() if rows}
+            plot(os.path.join(images, f"{file}-time.svg"), title, along, "seconds", curves(1))
+            plot(os.path.join(images, f"{file}-memory.svg"), title, along, "peak memory, MiB", curves(2))
+
+
+main()
