@@ -1,6 +1,6 @@
 """Time and memory of the program against the size of its input, as pictures in docs/images and a Markdown table.
 
-usage: cargo xtask bench --scaling, or: python3 xtask/scaling.py PROGRAM IMAGES
+usage: cargo xtask bench --scaling, or: python3 xtask/scaling.py PROGRAM FIT IMAGES, FIT being rbf-solve's example
 """
 
 import json
@@ -13,9 +13,9 @@ import time
 
 import numpy as np
 
-LIMIT = 200.0  # seconds, beyond which a job and all larger ones are left out
+LIMIT = 100.0  # seconds, beyond which a job and all larger ones are left out
 TRIANGLES = [1_000, 4_000, 16_000, 64_000, 256_000, 1_000_000, 4_000_000]
-LOOPS = [60, 250, 1_000, 4_000, 12_000, 24_000]
+CONSTRAINTS = [500, 2_000, 3_000, 10_000, 30_000, 100_000, 200_000]
 COLORS = ["#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b"]
 
 
@@ -46,19 +46,32 @@ def torus(triangles, shift):
     return points + shift, grid(m, n, True)
 
 
-def tube(n, base, up):
-    rings = 6
-    s, k = np.meshgrid(2 * np.pi * np.arange(n) / n, np.arange(rings), indexing="xy")
-    points = np.stack([np.cos(s), np.sin(s), base + up * k * 2 * np.pi / n], -1).reshape(-1, 3)
-    faces = grid(rings, n, False)
-    return points, faces if up > 0 else faces[:, ::-1]
+def bumpy(count):
+    """Constraints on a bumpy ball and off it: places and values."""
+    golden, i = np.pi * (3 - 5**0.5), np.arange(count // 2)
+    z = 1 - (4 * i + 2) / count
+    s = np.sqrt(1 - z * z)
+    d = np.stack([s * np.cos(golden * i), s * np.sin(golden * i), z], -1)
+    on = d * (1 + 0.1 * np.sin(5 * d[:, :1]) * np.cos(4 * d[:, 1:2]))
+    tau = 0.1 * (12 / count) ** 0.5
+    return np.hstack([np.vstack([on, on + tau * d]), np.repeat([0.0, tau], count // 2)[:, None]])
 
 
-def run(program, arguments):
-    """Seconds, peak mebibytes and the report; None if the job fails or takes too long."""
-    with tempfile.NamedTemporaryFile(suffix=".json") as report:
-        since = time.perf_counter()
-        child = subprocess.Popen([program, *arguments, "--report", report.name, "--quiet"], stderr=subprocess.DEVNULL)
+def apart(job):
+    """Runs a job in a process of its own: what this one has ever held counts as memory of those it starts."""
+    child = os.fork()
+    if child == 0:
+        job()
+        os._exit(0)
+    if os.waitpid(child, 0)[1]:
+        raise RuntimeError("an input was not written")
+
+
+def run(command):
+    """Seconds, peak mebibytes and what it prints; None if the job fails or takes too long."""
+    since = time.perf_counter()
+    with tempfile.TemporaryFile() as out:
+        child = subprocess.Popen(command, stdout=out)
         while True:
             pid, status, usage = os.wait4(child.pid, os.WNOHANG)
             if pid:
@@ -69,7 +82,8 @@ def run(program, arguments):
                 return None
             time.sleep(0.0005)
         seconds = time.perf_counter() - since
-        return (seconds, usage.ru_maxrss / 1024, json.load(open(report.name))) if status == 0 else None
+        out.seek(0)
+        return (seconds, usage.ru_maxrss / 1024, out.read()) if status == 0 else None
 
 
 def triangles(program, folder):
@@ -78,41 +92,41 @@ def triangles(program, folder):
     verbs = {
         "blend, one seam": ["union", a, b, "-o", out, "--radius", "1%"],
         "union": ["union", a, b, "-o", out],
-        "remesh": ["remesh", a, "-o", out],
+        "remesh": ["remesh", a, "-o", out, "--edge-length"],
         "cut": ["cut", a, "-o", out, "--plane", "0.1,0,0,1,0.2,0.1"],
         "features": ["features", a, "--no-radii"],
     }
     found = {verb: [] for verb in verbs}
     for size in TRIANGLES:
         for path, shift in ((a, 0.0), (b, np.array([0.9, 0.35, 0.2]))):
-            points, faces = torus(size, shift)
-            write(path, points, faces)
+            apart(lambda: write(path, *torus(size, shift)))
+        m = round(math.sqrt(size / 4))
         for verb, arguments in list(verbs.items()):
-            made = run(program, arguments)
+            length = [str(2.6 / m)] if verb == "remesh" else []
+            made = run([program, *arguments, *length, "--quiet"])
             if made is None:
                 del verbs[verb]
                 print(f"{verb} of {size}: none", file=sys.stderr)
                 continue
-            count = len(faces) * (2 if verb in ("blend, one seam", "union") else 1)
-            found[verb].append((count, made[0], made[1]))
+            found[verb].append((4 * m * m * (2 if b in arguments else 1), made[0], made[1]))
     return found
 
 
-def constraints(program, folder):
-    """For each stage of joining two tubes: (constraints, seconds, mebibytes of the whole)."""
-    a, b, out = (os.path.join(folder, name) for name in ("a.ply", "b.ply", "out.ply"))
-    found = {"fit": [], "all stages": []}
-    for n in LOOPS:
-        write(a, *tube(n, -0.4, -1))
-        write(b, *tube(n, 0.4, 1))
-        # The transition's own triangles do not grow with the constraints: the field alone is measured.
-        made = run(program, ["compose", a, b, "-o", out, "--edge-length", "0.05"])
-        if made is None:
-            print(f"compose of {n}: none", file=sys.stderr)
-            break
-        count, stages = made[2]["figures"]["constraints"], made[2]["stages"]
-        found["fit"].append((count, sum(s["milliseconds"] for s in stages if s["name"] == "fit") / 1e3, made[1]))
-        found["all stages"].append((count, made[0], made[1]))
+def constraints(fit, folder):
+    """For each kernel: (constraints, seconds, mebibytes)."""
+    places, points = (os.path.join(folder, name) for name in ("places", "points"))
+    np.random.default_rng(1).uniform(-1.2, 1.2, (1000, 3)).tofile(points)
+    kernels = ["biharmonic", "triharmonic"]
+    found = {f"{kernel} fit": [] for kernel in kernels}
+    for count in CONSTRAINTS:
+        apart(lambda: bumpy(count).tofile(places))
+        for kernel in list(kernels):
+            made = run([fit, kernel, places, points])
+            if made is None:
+                kernels.remove(kernel)
+                print(f"{kernel} fit of {count}: none", file=sys.stderr)
+                continue
+            found[f"{kernel} fit"].append((count, json.loads(made[2])["fit"], made[1]))
     return found
 
 
@@ -154,12 +168,12 @@ def table(head, found):
 
 
 def main():
-    program, images = sys.argv[1:]
-    print(f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, {time.strftime('%Y-%m-%d')}; whole program.")
+    program, fit, images = sys.argv[1:]
+    print(f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, {time.strftime('%Y-%m-%d')}; whole programs with reading and writing, of fits the fit alone.")
     with tempfile.TemporaryDirectory() as folder:
         for file, title, along, found in [
             ("scaling", "Torus, or two of them", "triangles in", triangles(program, folder)),
-            ("scaling-constraints", "Two tubes joined", "constraints", constraints(program, folder)),
+            ("scaling-constraints", "Points on a bumpy ball and off it", "constraints", constraints(fit, folder)),
         ]:
             table(along, found)
             curves = lambda k: {name: [(r[0], r[k]) for r in rows] for name, rows in found.items() if rows}

@@ -33,7 +33,9 @@ pub fn run(options: &Options) -> Result<(), Fault> {
         renew(PEERS, &script("peers.py", &[program("fusion-cli"), program("examples/fit")])?)
     } else if options.scaling {
         build(&["-p", "fusion-cli"])?;
-        renew(SCALING, &script("scaling.py", &[program("fusion-cli"), root().join("docs/images")])?)
+        build(&["-p", "rbf-solve", "--example", "fit"])?;
+        let programs = [program("fusion-cli"), program("examples/fit"), root().join("docs/images")];
+        renew(SCALING, &script("scaling.py", &programs)?)
     } else {
         benchmarks()
     }

@@ -53,7 +53,7 @@ pub(crate) fn key(k: IVec3) -> u64 {
 pub(crate) type KeyMap<T> = HashMap<u64, T, BuildHasherDefault<Mix>>;
 
 /// A set of packed keys.
-type KeySet = HashSet<u64, BuildHasherDefault<Mix>>;
+pub(crate) type KeySet = HashSet<u64, BuildHasherDefault<Mix>>;
 
 /// Mixes one integer.
 #[derive(Default)]

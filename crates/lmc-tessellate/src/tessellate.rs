@@ -4,8 +4,8 @@ use crate::border::{normals, smooth};
 use crate::error::Error;
 use crate::extract::extract;
 use crate::gap::{Curves, chords, fill, groups};
-use crate::grid::{Field, Grid, Limits, follow};
-use crate::rim::{Rim, Rims};
+use crate::grid::{Field, Grid, KeySet, Limits, follow, key};
+use crate::rim::{Near, Rim, Rims};
 use crate::trim::{Trimmed, trim};
 use glam::{DVec3, IVec3};
 use mesh_core::{Bounds, Connected, Faces, Positions, TriMesh, VertexId, Watch, boundary_loops};
@@ -103,22 +103,27 @@ fn lay_out(rims: &[Rim], params: &Params) -> Result<(Grid, Limits), Error> {
 /// The cells around all samples: the zero set passes through some of them.
 fn seeds(rims: &Rims, grid: &Grid) -> Vec<IVec3> {
     let mut last = IVec3::MAX;
-    let mut cells = vec![];
+    let (mut seen, mut cells) = (KeySet::default(), vec![]);
     for s in &rims.samples {
         let k = grid.cell_at(s.point);
         if k != last {
             last = k;
-            cells.extend((0..27).map(|i| k + IVec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+            let around = (0..27).map(|i| k + IVec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+            cells.extend(around.filter(|&beside| seen.insert(key(beside))));
         }
     }
     // Out of reach of the rims, nothing tells the sides apart.
-    cells.retain(|&k| rims.near(grid.center(k)).is_some() && in_front(rims, grid, k));
+    cells.retain(|&k| rims.near(grid.center(k)).is_some_and(|n| before(n, grid)));
     cells
 }
 
 /// Whether a cell is not behind a rim, inside its part.
 fn in_front(rims: &Rims, grid: &Grid, k: IVec3) -> bool {
-    rims.near(grid.center(k)).is_none_or(|n| n.side > 0.0 || n.distance < 0.9 * grid.size)
+    rims.near(grid.center(k)).is_none_or(|n| before(n, grid))
+}
+
+fn before(near: Near, grid: &Grid) -> bool {
+    near.side > 0.0 || near.distance < 0.9 * grid.size
 }
 
 /// Welds the wanted faces to the rims: vertices of the rims first, then the used ones of the zero set.
