@@ -4,6 +4,7 @@
 
 use crate::admit::System;
 use crate::affine::Affine;
+use crate::chebyshev::MOST;
 use crate::error::Error;
 use crate::far::{Plan, Translations};
 use crate::kernel::{Kernel, Radial, with_kernel};
@@ -17,18 +18,17 @@ const MOST_ROUNDS: usize = 12;
 const MOST_STEPS: usize = 60;
 /// By how much a correction is asked to reduce the residual.
 const REDUCTION: f64 = 1e-3;
-/// Degree of the expansions that measure the residual of many points, and of the finest that drive where direct sums do.
-const MEASURING: usize = 11;
-const FINEST: usize = 14;
+/// Degree of the expansions that measure the residual of many points: the most there is.
+const FINEST: usize = MOST - 1;
 /// Up to this many points residuals are measured by direct sums.
 const FEW: usize = 40_000;
 
 /// Degrees of the expansions that drive the iteration, each taken where the one before gains nothing more. The smoother the
 /// kernel and the nearer the points, the smaller the eigenvalues that must not drown.
-fn driving(kernel: Kernel) -> [usize; 3] {
+fn driving(kernel: Kernel) -> [usize; 2] {
     match kernel {
-        Kernel::Biharmonic => [7, MEASURING, FINEST],
-        Kernel::Triharmonic => [9, MEASURING, FINEST],
+        Kernel::Biharmonic => [7, FINEST],
+        Kernel::Triharmonic => [9, FINEST],
     }
 }
 
@@ -114,7 +114,7 @@ pub(crate) fn solve(
 
 /// [`solve`] with sums of other degrees.
 fn solve_by(
-    degrees: [usize; 3],
+    degrees: [usize; 2],
     system: &System,
     affine: &Affine,
     kernel: Kernel,
@@ -127,8 +127,8 @@ fn solve_by(
     let reduced = Reduced { affine, sign: with_kernel!(kernel, K => K::SIGN) };
     let screen = with_kernel!(kernel, K => Screen::new::<K>(&system.points, affine));
     step(0.2)?;
-    let translations = [(); 3].map(|()| OnceCell::new());
-    let plans = [(); 3].map(|()| OnceCell::new());
+    let translations = [(); 2].map(|()| OnceCell::new());
+    let plans = [(); 2].map(|()| OnceCell::new());
     let plan = |level: usize| {
         let translations = translations[level].get_or_init(|| Translations::new(kernel, degrees[level]));
         plans[level].get_or_init(|| Plan::new(translations, &system.points, None))
@@ -136,7 +136,7 @@ fn solve_by(
     let many = wanted.len() > FEW;
     let mut sum = Sum::new(&system.points, 0);
     let mut sums = vec![0.0; wanted.len()];
-    let (mut level, finest) = (0, if many { 1 } else { 2 });
+    let mut level = 0;
     let (mut best, mut first) = (f64::INFINITY, None);
     for round in 0..MOST_ROUNDS {
         let missing: Vec<f64> = wanted.iter().zip(&sums).map(|(w, s)| w - s).collect();
@@ -148,7 +148,7 @@ fn solve_by(
             return Ok((sum, r));
         }
         if worst >= 0.5 * best || worst.is_nan() {
-            if level == finest {
+            if level == 1 {
                 return Err(stalled(system, &r, round));
             }
             level += 1;
@@ -197,7 +197,7 @@ mod tests {
     use glam::DVec3;
 
     /// Tight bands of thousands of points, as openings of more than 900 edges give, drowned in the error of the first sums
-    /// and were refused. Sums of degree 2 and 4 drown here.
+    /// and were refused. Sums of degree 2 drown here.
     #[test]
     fn where_sums_are_too_coarse_finer_ones_go_on() {
         let n = 4000;
@@ -212,8 +212,8 @@ mod tests {
         let system = admit(&constraints, &Params::default()).unwrap();
         let affine = Affine::choose(&system).unwrap();
         let solve = |degrees| solve_by(degrees, &system, &affine, Kernel::Triharmonic, 1e-9, &|_| Ok(()));
-        assert!(matches!(solve([2, 2, 2]), Err(Error::NotConverged { .. })));
-        let (_, left) = solve([2, 4, 9]).unwrap();
+        assert!(matches!(solve([2, 2]), Err(Error::NotConverged { .. })));
+        let (_, left) = solve([2, FINEST]).unwrap();
         assert!(largest(&left) <= 1e-9);
     }
 }
