@@ -2,7 +2,7 @@
 //! the rest is matched anew.
 
 use crate::connected::{Connected, NotManifold};
-use crate::corner_table::{NONE, distinct, fans, in_range, ring_holds_once};
+use crate::corner_table::{NONE, distinct, fans, in_range};
 use crate::ids::{FaceId, HalfedgeId, VertexId};
 use crate::origin::{FaceOrigin, Origins, VertexOrigin};
 use crate::traits::{Adjacency, Faces, Positions};
@@ -99,7 +99,7 @@ where
 /// Pairs the halfedges that have no twin yet, and returns them all; `None` if three share an edge or two run alike.
 fn match_rest<M: Faces + Sync>(mesh: &M, twins: &mut [u32]) -> Option<Vec<HalfedgeId>> {
     let key = |h: u32| {
-        let [a, b] = ends(mesh, HalfedgeId(h));
+        let (a, b) = (mesh.tail(HalfedgeId(h)), mesh.head(HalfedgeId(h)));
         (a.min(b), a.max(b), h)
     };
     let mut open: Vec<_> =
@@ -108,7 +108,7 @@ fn match_rest<M: Faces + Sync>(mesh: &M, twins: &mut [u32]) -> Option<Vec<Halfed
     for group in open.chunk_by(|p, q| (p.0, p.1) == (q.0, q.1)) {
         match *group {
             [_] => {}
-            [(.., h), (.., t)] if ends(mesh, HalfedgeId(h))[0] != ends(mesh, HalfedgeId(t))[0] => {
+            [(.., h), (.., t)] if mesh.tail(HalfedgeId(h)) != mesh.tail(HalfedgeId(t)) => {
                 twins[h as usize] = t;
                 twins[t as usize] = h;
             }
@@ -118,9 +118,28 @@ fn match_rest<M: Faces + Sync>(mesh: &M, twins: &mut [u32]) -> Option<Vec<Halfed
     Some(open.into_iter().map(|(.., h)| HalfedgeId(h)).collect())
 }
 
-fn ends<M: Faces>(mesh: &M, h: HalfedgeId) -> [VertexId; 2] {
-    let corners = mesh.corners(h.face());
-    [corners[h.corner()], corners[(h.corner() + 1) % 3]]
+/// Whether the edge of `h` is met once in the fans of both its ends.
+fn ring_holds_once<M: Faces>(mesh: &M, twins: &[u32], outgoing: &[u32], h: HalfedgeId) -> bool {
+    let (a, b) = (mesh.tail(h), mesh.head(h));
+    [[a, b], [b, a]].into_iter().all(|[around, other]| {
+        let (first, mut met) = (outgoing[around.index()], 0);
+        let mut at = first;
+        loop {
+            // `at` leaves; the edge before it in the same face arrives.
+            let (leaving, arriving) = (HalfedgeId(at), HalfedgeId(at).prev());
+            met += usize::from(mesh.head(leaving) == other);
+            let next = twins[arriving.index()];
+            if next == NONE {
+                met += usize::from(mesh.tail(arriving) == other);
+                break;
+            }
+            if next == first {
+                break;
+            }
+            at = next;
+        }
+        met == 1
+    })
 }
 
 #[cfg(test)]

@@ -119,31 +119,6 @@ pub(crate) fn fans<M: Faces + Sync>(mesh: &M, twins: &[u32]) -> Result<Vec<u32>,
     Err(mesh.vertex_ids().filter(broken).collect())
 }
 
-/// Whether the edge of `h` is met once in the fans of both its ends.
-pub(crate) fn ring_holds_once<M: Faces>(mesh: &M, twins: &[u32], outgoing: &[u32], h: HalfedgeId) -> bool {
-    let corners = mesh.corners(h.face());
-    let ends = [corners[h.corner()], corners[(h.corner() + 1) % 3]];
-    [ends, [ends[1], ends[0]]].into_iter().all(|[around, other]| {
-        let (first, mut met) = (outgoing[around.index()], 0);
-        let mut at = first;
-        loop {
-            // `at` leaves; the edge before it in the same face arrives.
-            let (leaving, arriving) = (HalfedgeId(at), HalfedgeId(at).prev());
-            met += usize::from(mesh.head(leaving) == other);
-            let next = twins[arriving.index()];
-            if next == NONE {
-                met += usize::from(mesh.tail(arriving) == other);
-                break;
-            }
-            if next == first {
-                break;
-            }
-            at = next;
-        }
-        met == 1
-    })
-}
-
 fn lowest_outgoing<M: Faces>(mesh: &M, low: u32, chunk: &mut [u32]) {
     for f in mesh.face_ids() {
         for (k, v) in mesh.corners(f).into_iter().enumerate() {

@@ -196,8 +196,8 @@ mod tests {
     use crate::{Constraint, Params};
     use glam::DVec3;
 
-    /// Tight bands of thousands of points, as openings of more than 900 edges give, drowned in the error of the first sums
-    /// and were refused. Sums of degree 2 drown here.
+    /// Of tens of thousands of points in tight bands the smallest eigenvalues drowned in the error of the first sums, and the
+    /// system was refused. Sums of degree 2 drown here.
     #[test]
     fn where_sums_are_too_coarse_finer_ones_go_on() {
         let n = 4000;
