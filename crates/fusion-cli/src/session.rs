@@ -8,6 +8,7 @@ use fusion::mesh_core::{Bounds, Origins, Watch, bounds};
 use fusion::{Counts, Report, Stage};
 use mesh_io::{Format, Model};
 use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -151,8 +152,19 @@ impl Session {
     }
 
     fn tell_stages(&self, report: &Report) {
+        // Places that share one trouble can be hundreds; the report keeps them all.
+        const SHOWN: usize = 3;
+        let trouble = |warning: &str| warning.split_once(" near ").map_or_else(|| warning.to_string(), |w| w.0.into());
+        let mut met: BTreeMap<String, usize> = BTreeMap::new();
         for warning in &report.warnings {
-            self.warn(warning);
+            let seen = met.entry(trouble(warning)).or_default();
+            *seen += 1;
+            if *seen <= SHOWN {
+                self.warn(warning);
+            }
+        }
+        for (what, more) in met.into_iter().filter(|m| m.1 > SHOWN) {
+            self.warn(&format!("{what} at {} more places, which --report lists", more - SHOWN));
         }
         for stage in &report.stages {
             self.note(&format!("{:<24} {:>10.3} ms", stage.name, stage.milliseconds));

@@ -128,7 +128,10 @@ pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Re
     for (at, what) in &blended.fallbacks {
         report.warnings.push(format!("the blend near {at} is made as a field: {what}"));
     }
-    for (at, radius) in &blended.shrunk {
+    // The worst first: of many, the program shows these alone.
+    let mut shrunk = blended.shrunk.clone();
+    shrunk.sort_by(|a, b| a.1.total_cmp(&b.1));
+    for (at, radius) in shrunk {
         report.warnings.push(format!(
             "a ball of radius {} does not fit near {at}: one of radius {radius} is used there, fading into the full one",
             params.radius

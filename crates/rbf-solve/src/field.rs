@@ -45,7 +45,14 @@ impl Field {
             Solver::Iterative { tolerance } => Some(tolerance),
         };
         let (sum, missing) = match tolerance.filter(|_| system.gradients.is_empty()) {
-            Some(tolerance) => iterate::solve(&system, &affine, params.kernel, tolerance, &step)?,
+            Some(tolerance) => match iterate::solve(&system, &affine, params.kernel, tolerance, &step) {
+                Err(Error::NotConverged { .. })
+                    if params.solver == Solver::Auto && system.unknowns() <= Solver::MOST_RESCUED =>
+                {
+                    dense::solve(&system, &affine, params.kernel, &step)?
+                }
+                solved => solved?,
+            },
             None => dense::solve(&system, &affine, params.kernel, &step)?,
         };
         let n = system.points.len();

@@ -24,7 +24,8 @@ impl Default for Params {
 /// How the system is solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Solver {
-    /// Dense up to [`Solver::MOST_DENSE`] unknowns, and wherever there are gradients; iterative to [`Solver::TOLERANCE`] beyond.
+    /// Dense up to [`Solver::MOST_DENSE`] unknowns, and wherever there are gradients; iterative to [`Solver::TOLERANCE`] beyond, but
+    /// dense again where that does not converge and there are no more than [`Solver::MOST_RESCUED`].
     #[default]
     Auto,
     /// Cholesky factorization of the whole system. Exact up to rounding; n²·8 bytes and n³/3 operations.
@@ -39,6 +40,8 @@ pub enum Solver {
 impl Solver {
     /// Up to how many unknowns [`Solver::Auto`] solves densely. A constraint with a gradient has four unknowns, others one.
     pub const MOST_DENSE: usize = 4000;
+    /// Up to how many unknowns [`Solver::Auto`] solves densely what does not converge: 2 GiB.
+    pub const MOST_RESCUED: usize = 16_000;
     /// The tolerance of [`Solver::Auto`].
     pub const TOLERANCE: f64 = 1e-8;
 }

@@ -5,7 +5,7 @@ use super::{Error, Params};
 use crate::Report;
 use glam::DVec3;
 use lmc_tessellate::{Rim, Transition, suggested_cell, tessellate};
-use mesh_core::{Connected, Faces, TriMesh, VertexId, Watch};
+use mesh_core::{Connected, Faces, TriMesh, VertexId, VertexMap, Watch};
 use rayon::prelude::*;
 use rbf_solve::Field;
 use remesh::{Frozen, Projection, Sizing};
@@ -61,13 +61,13 @@ fn even_out(
     watch: &Watch,
 ) -> Result<TriMesh, Error> {
     let sizes = Sizes::new(openings, params.edge_length);
-    let size = |p: DVec3| sizes.at(p);
+    let sizes = VertexMap::from(mesh.positions.par_iter().map(|&p| sizes.at(p)).collect::<Vec<f64>>());
     let reach = 0.5 * mean_edge(openings);
     let edge = params.edge_length.unwrap_or_else(|| mean_edge(openings));
     // The field is dear: all rounds follow the tessellated surface, which is near enough for a last step to find the field.
     let how = remesh::Params { feature_angle: 180.0, rounds: ROUNDS, lambda: LAMBDA, ..remesh::Params::new(edge) };
     let Ok(connected) = Connected::new(mesh) else { return Err(Error::Closed) };
-    let evened = remesh::remesh(&connected, &Frozen::default(), Sizing::Field(&size), &how, Projection::Input, watch)?;
+    let evened = remesh::remesh(&connected, &Frozen::default(), Sizing::PerVertex(&sizes), &how, Projection::Input, watch)?;
     let mut mesh = evened.mesh;
     let rims: usize = openings.iter().map(|o| o.vertices.len()).sum();
     onto(field, &mut mesh.positions[rims..], reach);

@@ -1,6 +1,6 @@
 //! Tangential relaxation towards equal areas.
 
-use super::state::{Kind, State, cross, keeps_side};
+use super::state::{Kind, State, cross, is_flat, keeps_side};
 use super::table::{NONE, Table};
 use glam::DVec3;
 use mesh_core::EditObserver;
@@ -133,12 +133,7 @@ pub(crate) fn weights(table: &Table, points: &[DVec3], sizes: &[f64]) -> Vec<f64
 
 /// Takes back the moves of the corners of every face that turned over, until none has. Returns how many there were.
 pub(crate) fn undo_folds<O: EditObserver>(state: &mut State<'_, O>, before: &[DVec3], arcs: &[(u32, f64)]) -> usize {
-    let turned = |table: &Table, points: &[DVec3], f: u32| {
-        let corners = [0, 1, 2].map(|k| table.tail(3 * f + k));
-        corners[0] != NONE
-            && corners.iter().any(|&v| points[v as usize] != before[v as usize])
-            && !keeps_side(corners.map(|v| before[v as usize]), corners.map(|v| points[v as usize]))
-    };
+    let turned = |table: &Table, points: &[DVec3], f: u32| turns(table, before, points, f);
     let (table, points) = (&state.table, &state.points);
     let faces = (0..table.halfedge_count() / 3).into_par_iter();
     let mut suspects: Vec<u32> = faces.with_min_len(CHUNK).filter(|&f| turned(table, points, f)).collect();
@@ -165,4 +160,48 @@ pub(crate) fn undo_folds<O: EditObserver>(state: &mut State<'_, O>, before: &[DV
         suspects = touched;
     }
     undone
+}
+
+/// Whether moves from `before` turn a face over or flatten it. One that was flat or upside down beside its neighbours may do
+/// anything but get worse: held to its own normal, it would stay what it is.
+fn turns(table: &Table, before: &[DVec3], points: &[DVec3], f: u32) -> bool {
+    let corners = [0, 1, 2].map(|k| table.tail(3 * f + k));
+    if corners[0] == NONE || corners.iter().all(|&v| points[v as usize] == before[v as usize]) {
+        return false;
+    }
+    let at = |points: &[DVec3], corners: [u32; 3]| corners.map(|v| points[v as usize]);
+    let (old, new) = (at(before, corners), at(points, corners));
+    if !is_flat(old) && keeps_side(old, new) {
+        return false;
+    }
+    let beside = (3 * f..3 * f + 3).map(|h| table.twin(h)).filter(|&h| h != NONE);
+    let around: DVec3 = beside.map(|h| cross(at(before, [table.tail(h), table.head(h), table.apex(h)]))).sum();
+    let up = cross(old) + around;
+    let was_sound = !is_flat(old) && cross(old).dot(up) > 0.0;
+    was_sound || cross(new).dot(up) < cross(old).dot(up)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh_core::{Connected, TriMesh, VertexId};
+
+    /// A face that was once turned over was held to its own normal, so that every move which turned it back was taken back.
+    #[test]
+    fn a_face_upside_down_may_turn_back() {
+        // A hexagon around vertex 6, which lies across its rim or on it.
+        let at = |k: u32| (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
+        let rim: Vec<DVec3> = (0..6).map(|k| DVec3::new(at(k).1, at(k).0, 0.0)).collect();
+        let with = |middle: DVec3| rim.iter().copied().chain([middle]).collect::<Vec<_>>();
+        let faces = (0..6).map(|k| [k, (k + 1) % 6, 6].map(VertexId)).collect();
+        let mesh = Connected::new(TriMesh { positions: with(DVec3::ZERO), faces, ..TriMesh::default() }).unwrap();
+        let table = Table::new(&mesh);
+        let turns = |from: DVec3, to: DVec3| (0..6).any(|f| turns(&table, &with(from), &with(to), f));
+        let across = |share: f64| share * (rim[0] + rim[1]) / 2.0;
+        for bad in [0.999, 1.0, 1.001, 1.2] {
+            assert!(turns(DVec3::ZERO, across(bad)), "{bad}");
+            assert!(!turns(across(bad), DVec3::ZERO), "{bad}");
+        }
+        assert!(turns(across(0.999), across(1.001)) && turns(across(1.001), across(1.2)));
+    }
 }

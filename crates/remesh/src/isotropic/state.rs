@@ -262,13 +262,16 @@ pub(crate) fn cross([a, b, c]: [DVec3; 3]) -> DVec3 {
 #[inline]
 pub(crate) fn keeps_side(old: [DVec3; 3], new: [DVec3; 3]) -> bool {
     let (m, n) = (cross(old), cross(new));
-    let flat = |n: DVec3, [a, b, c]: [DVec3; 3]| {
-        let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
-        // Twice the area over the squared longest side: 0.87 when equilateral.
-        n.length_squared() <= 1e-4 * longest * longest
-    };
-    if flat(m, old) {
-        return !flat(n, new) || n.length_squared() >= m.length_squared();
+    if is_flat(old) {
+        return !is_flat(new) || n.length_squared() >= m.length_squared();
     }
-    !flat(n, new) && m.dot(n) >= TURN * (m.length_squared() * n.length_squared()).sqrt()
+    !is_flat(new) && m.dot(n) >= TURN * (m.length_squared() * n.length_squared()).sqrt()
+}
+
+/// Whether a triangle is a hundred times longer than high, or more.
+#[inline]
+pub(crate) fn is_flat([a, b, c]: [DVec3; 3]) -> bool {
+    let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+    // Twice the area over the squared longest side: 0.87 when equilateral.
+    cross([a, b, c]).length_squared() <= 1e-4 * longest * longest
 }
