@@ -5,9 +5,10 @@ use crate::affine::Affine;
 use crate::constraint::Constraint;
 use crate::dense;
 use crate::error::Error;
-use crate::iterate;
+use crate::iterate::{self, Rescue};
 use crate::kernel::Kernel;
 use crate::params::{Params, Solver};
+use crate::patches::Patches;
 use crate::sum::Sum;
 use glam::DVec3;
 
@@ -17,10 +18,10 @@ pub type Progress<'a> = dyn Fn(f64) -> bool + Sync + 'a;
 /// An implicit function f(x) = Σ w φ(|x − c|) + affine: negative inside, zero on the surface, and as smooth as its kernel lets it be.
 #[derive(Clone, Debug)]
 pub struct Field {
-    kernel: Kernel,
+    pub(crate) kernel: Kernel,
     centre: DVec3,
-    scale: f64,
-    sum: Sum,
+    pub(crate) scale: f64,
+    pub(crate) sum: Sum,
     residual: f64,
     gradient_residual: f64,
     merged: Vec<[usize; 2]>,
@@ -44,11 +45,13 @@ impl Field {
             Solver::Auto => (system.unknowns() > Solver::MOST_DENSE).then_some(Solver::TOLERANCE),
             Solver::Iterative { tolerance } => Some(tolerance),
         };
+        let rescue = match params.solver {
+            Solver::Auto if system.unknowns() <= Solver::MOST_RESCUED => Rescue::Dense,
+            _ => Rescue::Finer,
+        };
         let (sum, missing) = match tolerance.filter(|_| system.gradients.is_empty()) {
-            Some(tolerance) => match iterate::solve(&system, &affine, params.kernel, tolerance, &step) {
-                Err(Error::NotConverged { .. })
-                    if params.solver == Solver::Auto && system.unknowns() <= Solver::MOST_RESCUED =>
-                {
+            Some(tolerance) => match iterate::solve(&system, &affine, params.kernel, tolerance, rescue, &step) {
+                Err(Error::NotConverged { .. }) if matches!(rescue, Rescue::Dense) => {
                     dense::solve(&system, &affine, params.kernel, &step)?
                 }
                 solved => solved?,
@@ -106,7 +109,13 @@ impl Field {
         }
     }
 
-    fn normalised(&self, points: &[DVec3]) -> Vec<DVec3> {
+    /// The field for many points that lie densely along a surface: in cubes of a width, in model units, within which values and
+    /// gradients of far centres are expanded, to about 1e-6 of the width. 40 spacings of the points make good cubes.
+    pub fn patches(&self, width: f64) -> Patches<'_> {
+        Patches::new(self, width / self.scale)
+    }
+
+    pub(crate) fn normalised(&self, points: &[DVec3]) -> Vec<DVec3> {
         points.iter().map(|&p| (p - self.centre) / self.scale).collect()
     }
 

@@ -32,6 +32,15 @@ fn driving(kernel: Kernel) -> [usize; 2] {
     }
 }
 
+/// What comes after sums that are too coarse.
+#[derive(Clone, Copy)]
+pub(crate) enum Rescue {
+    /// Finer ones.
+    Finer,
+    /// Nothing here: the dense solver, faster for systems it can hold.
+    Dense,
+}
+
 /// The reduced system: values less the affine function through those at the special four.
 struct Reduced<'a> {
     affine: &'a Affine,
@@ -107,14 +116,19 @@ pub(crate) fn solve(
     affine: &Affine,
     kernel: Kernel,
     tolerance: f64,
+    rescue: Rescue,
     step: &dyn Fn(f64) -> Result<(), Error>,
 ) -> Result<(Sum, Vec<f64>), Error> {
-    solve_by(driving(kernel), system, affine, kernel, tolerance, step)
+    let [coarse, fine] = driving(kernel);
+    match rescue {
+        Rescue::Finer => solve_by(&[coarse, fine], system, affine, kernel, tolerance, step),
+        Rescue::Dense => solve_by(&[coarse], system, affine, kernel, tolerance, step),
+    }
 }
 
 /// [`solve`] with sums of other degrees.
 fn solve_by(
-    degrees: [usize; 2],
+    degrees: &[usize],
     system: &System,
     affine: &Affine,
     kernel: Kernel,
@@ -148,7 +162,7 @@ fn solve_by(
             return Ok((sum, r));
         }
         if worst >= 0.5 * best || worst.is_nan() {
-            if level == 1 {
+            if level + 1 == degrees.len() {
                 return Err(stalled(system, &r, round));
             }
             level += 1;
@@ -161,7 +175,7 @@ fn solve_by(
             *w += c;
         }
         if many {
-            sums = plan(1).sums(&sum.weights);
+            sums = plan(degrees.len() - 1).sums(&sum.weights);
         } else {
             sum.values(kernel, &system.points, &mut sums);
         }
@@ -211,9 +225,9 @@ mod tests {
         let constraints: Vec<Constraint> = (0..n as usize).map(point).collect();
         let system = admit(&constraints, &Params::default()).unwrap();
         let affine = Affine::choose(&system).unwrap();
-        let solve = |degrees| solve_by(degrees, &system, &affine, Kernel::Triharmonic, 1e-9, &|_| Ok(()));
-        assert!(matches!(solve([2, 2]), Err(Error::NotConverged { .. })));
-        let (_, left) = solve([2, FINEST]).unwrap();
+        let solve = |degrees: &[usize]| solve_by(degrees, &system, &affine, Kernel::Triharmonic, 1e-9, &|_| Ok(()));
+        assert!(matches!(solve(&[2, 2]), Err(Error::NotConverged { .. })));
+        let (_, left) = solve(&[2, FINEST]).unwrap();
         assert!(largest(&left) <= 1e-9);
     }
 }

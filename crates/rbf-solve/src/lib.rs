@@ -27,7 +27,7 @@
 //! | `dense.rs` | assembling and factoring the whole system |
 //! | `iterate.rs`, `order.rs`, `screen.rs` | conjugate gradients for many constraints, and what makes them converge |
 //! | `far.rs`, `octree.rs`, `meet.rs`, `chebyshev.rs` | sums over many centres at many points |
-//! | `field.rs` | `Field`: fit, value, gradient |
+//! | `field.rs`, `patches.rs` | `Field`: fit, value, gradient; the same at many points along a surface |
 //! | `thin.rs` | fewer constraints far from the boundary |
 
 #![allow(clippy::inline_always, reason = "only what is inlined is compiled for the widest vectors of the machine")]
@@ -47,6 +47,7 @@ mod neighbours;
 mod octree;
 mod order;
 mod params;
+mod patches;
 mod screen;
 mod sum;
 mod thin;
@@ -56,4 +57,5 @@ pub use error::Error;
 pub use field::{Field, Progress};
 pub use kernel::Kernel;
 pub use params::{Params, Solver};
+pub use patches::Patches;
 pub use thin::{Thinning, thin};

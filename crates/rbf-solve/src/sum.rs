@@ -104,7 +104,7 @@ impl Sum {
 
     /// In the same order as each alone, so that it gives the same bits. For centres without gradient weights.
     #[inline(always)]
-    fn block_of_both<K: Radial>(&self, at: &Block) -> ([f64; LANES], Block) {
+    pub(crate) fn block_of_both<K: Radial>(&self, at: &Block) -> ([f64; LANES], Block) {
         let [c, cx, cy, cz] = self.affine;
         let mut value: [f64; LANES] = std::array::from_fn(|l| c + cx * at[0][l] + cy * at[1][l] + cz * at[2][l]);
         let mut sum: Block = std::array::from_fn(|k| [self.affine[k + 1]; LANES]);
@@ -124,7 +124,7 @@ impl Sum {
     }
 
     #[inline(always)]
-    fn block_values<K: Radial>(&self, at: &Block) -> [f64; LANES] {
+    pub(crate) fn block_values<K: Radial>(&self, at: &Block) -> [f64; LANES] {
         let [c, cx, cy, cz] = self.affine;
         let mut sum: [f64; LANES] = std::array::from_fn(|l| c + cx * at[0][l] + cy * at[1][l] + cz * at[2][l]);
         let plain = self.x.len() - self.tilts[0].len();
@@ -191,6 +191,6 @@ pub(crate) fn add_block<K: Radial>(centres: [&[f64]; 3], weights: &[f64], at: &B
 
 /// Puts up to `LANES` points across the lanes, the first filling what is left over.
 #[inline(always)]
-fn spread(points: &[DVec3]) -> Block {
+pub(crate) fn spread(points: &[DVec3]) -> Block {
     std::array::from_fn(|k| std::array::from_fn(|l| points.get(l).unwrap_or(&points[0])[k]))
 }

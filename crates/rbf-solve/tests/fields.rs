@@ -317,3 +317,22 @@ proptest! {
         }
     }
 }
+
+/// Thousands of points in a tight band leave the iteration nothing to gain; what dense memory can hold is solved there.
+#[test]
+fn a_tight_band_is_solved_densely() {
+    let turn = |i: u32| (std::f64::consts::TAU * f64::from(i) / 1050.0).sin_cos();
+    let constraints: Vec<Constraint> = [-0.4, 0.4]
+        .into_iter()
+        .flat_map(|z| (0..1050).map(move |i| (DVec3::new(turn(i).1, turn(i).0, 0.0), z)))
+        .flat_map(|(d, z)| {
+            let at = d + z * DVec3::Z;
+            [Constraint::on_surface(at), Constraint::off_surface(at + 1e-5 * d, 1e-5)]
+        })
+        .collect();
+    let fit = |solver| Field::fit(&constraints, &Params { solver, ..Params::default() }, &|_| true);
+    let iterative = fit(Solver::Iterative { tolerance: Solver::TOLERANCE });
+    assert!(matches!(iterative, Err(Error::NotConverged { .. })), "{:?}", iterative.map(|f| f.residual()));
+    let field = fit(Solver::Auto).unwrap();
+    assert!(field.residual() < 1e-8, "{:e}", field.residual());
+}

@@ -7,7 +7,7 @@ use glam::DVec3;
 use lmc_tessellate::{Rim, Transition, suggested_cell, tessellate};
 use mesh_core::{Connected, Faces, TriMesh, VertexId, VertexMap, Watch};
 use rayon::prelude::*;
-use rbf_solve::Field;
+use rbf_solve::{Field, Patches};
 use remesh::{Frozen, Projection, Sizing};
 use std::collections::BTreeSet;
 
@@ -15,6 +15,9 @@ use std::collections::BTreeSet;
 /// triangles of marching cubes become nearly equilateral.
 const ROUNDS: usize = 7;
 const LAMBDA: f64 = 0.5;
+
+/// Cells along a cube in which the field is expanded: wider ones have more centres near, narrower ones are more.
+const CUBE: f64 = 40.0;
 
 /// Edges of the surface around an opening, at least.
 const ROUND: f64 = 28.0;
@@ -36,6 +39,7 @@ pub(super) fn surface(
         steps: 0,
         ..lmc_tessellate::Params::default()
     };
+    let field = &field.patches(CUBE * how.cell);
     let values = |points: &[DVec3], out: &mut [f64]| field.values(points, out);
     let made = report.time("tessellate", || tessellate(&rims, &values, &how, watch))?;
     report.figures.insert("cells".into(), made.cells as f64);
@@ -56,7 +60,7 @@ fn cell_size(rims: &[Rim], openings: &[Opening], params: &Params) -> f64 {
 fn even_out(
     mesh: TriMesh,
     openings: &[Opening],
-    field: &Field,
+    field: &Patches<'_>,
     params: &Params,
     watch: &Watch,
 ) -> Result<TriMesh, Error> {
@@ -67,16 +71,17 @@ fn even_out(
     // The field is dear: all rounds follow the tessellated surface, which is near enough for a last step to find the field.
     let how = remesh::Params { feature_angle: 180.0, rounds: ROUNDS, lambda: LAMBDA, ..remesh::Params::new(edge) };
     let Ok(connected) = Connected::new(mesh) else { return Err(Error::Closed) };
-    let evened = remesh::remesh(&connected, &Frozen::default(), Sizing::PerVertex(&sizes), &how, Projection::Input, watch)?;
+    let evened =
+        remesh::remesh(&connected, &Frozen::default(), Sizing::PerVertex(&sizes), &how, Projection::Input, watch)?;
     let mut mesh = evened.mesh;
     let rims: usize = openings.iter().map(|o| o.vertices.len()).sum();
-    onto(field, &mut mesh.positions[rims..], reach);
+    onto(|at, v, g| field.values_and_gradients(at, v, g), &mut mesh.positions[rims..], reach);
     Ok(mesh)
 }
 
 /// Moves every point towards the zero set by Newton's steps: one, and another wherever the one was long beside the
 /// `reach` that no step exceeds.
-fn onto(field: &Field, points: &mut [DVec3], reach: f64) {
+fn onto(field: impl Fn(&[DVec3], &mut [f64], &mut [DVec3]), points: &mut [DVec3], reach: f64) {
     const STEPS: usize = 3;
     // What is left after a step falls with its square.
     const LONG: f64 = 1e-3;
@@ -84,7 +89,7 @@ fn onto(field: &Field, points: &mut [DVec3], reach: f64) {
     for _ in 0..STEPS {
         let at: Vec<DVec3> = far.iter().map(|&i| points[i]).collect();
         let (mut values, mut gradients) = (vec![0.0; at.len()], vec![DVec3::ZERO; at.len()]);
-        field.values_and_gradients(&at, &mut values, &mut gradients);
+        field(&at, &mut values, &mut gradients);
         let mut still = vec![];
         for ((&i, v), g) in far.iter().zip(values).zip(gradients) {
             let step = -v * g / g.length_squared();
@@ -170,7 +175,7 @@ pub(super) fn split_chords(mesh: &mut TriMesh, taken: &BTreeSet<[u32; 2]>, field
     for [a, b] in &chords {
         let middle = VertexId::from(mesh.vertex_count());
         let mut p = [0.5 * (mesh.positions[*a as usize] + mesh.positions[*b as usize])];
-        onto(field, &mut p, reach);
+        onto(|at, v, g| field.values_and_gradients(at, v, g), &mut p, reach);
         mesh.positions.push(p[0]);
         for f in 0..mesh.faces.len() {
             let face = mesh.faces[f];
