@@ -30,7 +30,9 @@ pub fn run(options: &Options) -> Result<(), Fault> {
     if options.peers {
         build(&["-p", "fusion-cli"])?;
         build(&["-p", "rbf-solve", "--example", "fit"])?;
-        renew(PEERS, &script("peers.py", &[program("fusion-cli"), program("examples/fit")])?)
+        build(&["-p", "fusion", "--example", "stage"])?;
+        let programs = [program("fusion-cli"), program("examples/fit"), program("examples/stage")];
+        renew(PEERS, &script("peers.py", &programs)?)
     } else if options.scaling {
         build(&["-p", "fusion-cli"])?;
         build(&["-p", "rbf-solve", "--example", "fit"])?;
