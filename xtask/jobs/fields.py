@@ -120,4 +120,4 @@ def zero_sets(table):
             return lambda: made.build_isosurface(np.concatenate([low, high]), cell, 0.0)
 
         table.peer(job, "scipy + skimage", scipy, lambda made: triangles(len(made[1])), rounds=1)
-        table.peer(job, "ferreus_rbf", ferreus_rbf, lambda made: triangles(len(made.faces)))
+        table.peer(job, "ferreus_rbf", ferreus_rbf, lambda made: triangles(len(made.facets)))

@@ -61,7 +61,7 @@ fn flow(mesh: &TriMesh, time: f64, out: &str) -> Result<(f64, usize), Fault> {
         let (mesh, flow) = (Connected::new(mesh)?, remesh::Flow { time, steps: 1 });
         Ok(remesh::curvature_flow(&mesh, &remesh::Frozen::default(), &flow, &Watch::default())?)
     })?;
-    write(out, points.iter().flat_map(|p| p.as_ref()))?;
+    write(out, points.iter().flat_map(AsRef::as_ref))?;
     Ok((seconds, points.len()))
 }
 
@@ -79,7 +79,7 @@ fn zero_set(kernel: Kernel, constraints: &[f64], caps: &TriMesh, cell: f64, out:
         let params = lmc_tessellate::Params { cell, ..Default::default() };
         Ok(tessellate(&rims, &values, &params, &Watch::default())?)
     })?;
-    write(out, made.mesh.positions.iter().flat_map(|p| p.as_ref()))?;
+    write(out, made.mesh.positions.iter().flat_map(AsRef::as_ref))?;
     Ok((seconds, made.mesh.face_count()))
 }
 

@@ -139,9 +139,9 @@ fn vertices_in_two_elements_share_what_attributes_they_have() {
         );
         let model = read_stream(text.as_bytes(), Format::Ply).unwrap();
         let there = |known: &[bool]| known.iter().filter(|&&k| k).count();
-        let normals: Vec<bool> = model.normals.unwrap().iter().map(|n| *n == DVec3::Z).collect();
-        let uvs: Vec<bool> = model.uvs.unwrap().iter().map(|uv| *uv == [0.5, 0.25]).collect();
-        let colors: Vec<bool> = model.colors.unwrap().iter().map(|c| *c == [1.0, 0.0, 0.0, 1.0]).collect();
+        let normals: Vec<bool> = model.normals.unwrap().as_slice().iter().map(|n| *n == DVec3::Z).collect();
+        let uvs: Vec<bool> = model.uvs.unwrap().as_slice().iter().map(|uv| *uv == [0.5, 0.25]).collect();
+        let colors: Vec<bool> = model.colors.unwrap().as_slice().iter().map(|c| *c == [1.0, 0.0, 0.0, 1.0]).collect();
         assert_eq!([there(&normals), there(&uvs), there(&colors)], [1; 3]);
         let rich_corner = usize::from(first.1 == plain) * 2;
         assert!(normals[rich_corner] && uvs[rich_corner] && colors[rich_corner]);
