@@ -13,48 +13,12 @@ import time
 
 import numpy as np
 
+from inputs import bumpy, torus, write
+
 LIMIT = 100.0  # seconds, beyond which a job and all larger ones are left out
 TRIANGLES = [1_000, 4_000, 16_000, 64_000, 256_000, 1_000_000, 4_000_000]
 CONSTRAINTS = [500, 2_000, 3_000, 10_000, 30_000, 100_000, 200_000]
 COLORS = ["#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b"]
-
-
-def write(path, points, faces):
-    head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n"
-    head += "".join(f"property double {axis}\n" for axis in "xyz")
-    head += f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
-    rows = np.empty(len(faces), dtype=[("n", "u1"), ("v", "<i4", 3)])
-    rows["n"], rows["v"] = 3, faces
-    with open(path, "wb") as out:
-        out.write(head.encode() + points.astype("<f8").tobytes() + rows.tobytes())
-
-
-def grid(m, n, wrapped):
-    """Triangles between m rings of n points, the last joined to the first if `wrapped`."""
-    i, j = np.meshgrid(np.arange(m if wrapped else m - 1), np.arange(n), indexing="ij")
-    a, b = i * n + j, i * n + (j + 1) % n
-    c, d = (i + 1) % m * n + j, (i + 1) % m * n + (j + 1) % n
-    return np.stack([np.stack([a, b, d], -1), np.stack([a, d, c], -1)], 2).reshape(-1, 3)
-
-
-def torus(triangles, shift):
-    m = round(math.sqrt(triangles / 4))
-    n = 2 * m
-    s, t = np.meshgrid(2 * np.pi * (np.arange(n) + 0.3) / n, 2 * np.pi * np.arange(m) / m, indexing="xy")
-    around = 1 + 0.4 * np.cos(t)
-    points = np.stack([around * np.cos(s), around * np.sin(s), 0.4 * np.sin(t)], -1).reshape(-1, 3)
-    return points + shift, grid(m, n, True)
-
-
-def bumpy(count):
-    """Constraints on a bumpy ball and off it: places and values."""
-    golden, i = np.pi * (3 - 5**0.5), np.arange(count // 2)
-    z = 1 - (4 * i + 2) / count
-    s = np.sqrt(1 - z * z)
-    d = np.stack([s * np.cos(golden * i), s * np.sin(golden * i), z], -1)
-    on = d * (1 + 0.1 * np.sin(5 * d[:, :1]) * np.cos(4 * d[:, 1:2]))
-    tau = 0.1 * (12 / count) ** 0.5
-    return np.hstack([np.vstack([on, on + tau * d]), np.repeat([0.0, tau], count // 2)[:, None]])
 
 
 def apart(job):

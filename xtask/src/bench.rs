@@ -1,5 +1,6 @@
 //! Runs the benchmarks and puts their times into docs/benchmarks.md.
 
+use crate::pages::Part;
 use crate::{Fault, root, walk};
 use clap::Args;
 use serde_json::Value;
@@ -8,10 +9,13 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// The table stands between these lines of the page; the rest is written by hand.
-const MARKS: [&str; 2] = ["<!-- table: written by cargo xtask bench -->", "<!-- end of table -->"];
-const SCALING: [&str; 2] = ["<!-- scaling: written by cargo xtask bench --scaling -->", "<!-- end of scaling -->"];
-const PEERS: [&str; 2] = ["<!-- peers: written by cargo xtask bench --peers -->", "<!-- end of peers -->"];
+const TABLE: Part = on_page(["<!-- table: written by cargo xtask bench -->", "<!-- end of table -->"]);
+const SCALING: Part = on_page(["<!-- scaling: written by cargo xtask bench --scaling -->", "<!-- end of scaling -->"]);
+const PEERS: Part = on_page(["<!-- peers: written by cargo xtask bench --peers -->", "<!-- end of peers -->"]);
+
+const fn on_page(marks: [&'static str; 2]) -> Part {
+    Part { page: "docs/benchmarks.md", marks }
+}
 
 /// What to run.
 #[derive(Args)]
@@ -30,12 +34,14 @@ pub fn run(options: &Options) -> Result<(), Fault> {
     if options.peers {
         build(&["-p", "fusion-cli"])?;
         build(&["-p", "rbf-solve", "--example", "fit"])?;
-        renew(PEERS, &script("peers.py", &[program("fusion-cli"), program("examples/fit")])?)
+        build(&["-p", "fusion", "--example", "stage"])?;
+        let programs = [program("fusion-cli"), program("examples/fit"), program("examples/stage")];
+        PEERS.renew(&script("peers.py", &programs)?)
     } else if options.scaling {
         build(&["-p", "fusion-cli"])?;
         build(&["-p", "rbf-solve", "--example", "fit"])?;
         let programs = [program("fusion-cli"), program("examples/fit"), root().join("docs/images")];
-        renew(SCALING, &script("scaling.py", &programs)?)
+        SCALING.renew(&script("scaling.py", &programs)?)
     } else {
         benchmarks()
     }
@@ -64,19 +70,7 @@ fn benchmarks() -> Result<(), Fault> {
     {
         return Err("a benchmark failed".into());
     }
-    renew(MARKS, &table()?)
-}
-
-/// Puts a table between its marks on the page.
-fn renew(marks: [&str; 2], table: &str) -> Result<(), Fault> {
-    let page = root().join("docs/benchmarks.md");
-    let text = fs::read_to_string(&page)?;
-    let marked = || {
-        let (before, rest) = text.split_once(marks[0])?;
-        Some((before, rest.split_once(marks[1])?.1))
-    };
-    let (before, after) = marked().ok_or("docs/benchmarks.md has lost the marks around its table")?;
-    Ok(fs::write(&page, format!("{before}{}\n{table}{}{after}", marks[0], marks[1]))?)
+    TABLE.renew(&table()?)
 }
 
 /// One row per benchmark, in order of name.

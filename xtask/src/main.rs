@@ -6,12 +6,14 @@
 //! | `regress/` | cases against approved records, real models in bulk |
 //! | `fixtures.rs`, `models.rs` | the parts of all cases and recipes as files |
 //! | `bench.rs` | benchmarks into a page |
-//! | `tidy.rs` | crate arrows, file lengths, citations, paths |
+//! | `pages.rs` | what stands between marks on a page |
+//! | `tidy.rs` | crate arrows, file lengths, citations, paths, pages that are stale |
 
 mod bench;
 mod ci;
 mod fixtures;
 mod models;
+mod pages;
 mod regress;
 mod tidy;
 
@@ -38,9 +40,11 @@ enum Chore {
     Bench(bench::Options),
     /// Writes the parts of all regression cases as files
     Fixtures(fixtures::Options),
+    /// Writes the keys of recipes into docs/recipes.md
+    Reference,
     /// Runs the cases of fixtures/ against their approved records; with --models also real models
     Regress(regress::Options),
-    /// Checks crate arrows, file lengths, citations and paths
+    /// Checks crate arrows, file lengths, citations, paths and the reference of recipes
     Tidy,
 }
 
@@ -49,6 +53,7 @@ fn main() -> ExitCode {
         Chore::Ci => ci::run(),
         Chore::Bench(options) => bench::run(&options),
         Chore::Fixtures(options) => fixtures::run(&options),
+        Chore::Reference => pages::RECIPES.renew(&fusion::recipe::reference()),
         Chore::Regress(options) => regress::run(&options),
         Chore::Tidy => tidy::run(),
     };

@@ -1,6 +1,6 @@
-//! The house rules a compiler does not check: crate arrows, file lengths, lints switched on, citations, paths.
+//! The house rules a compiler does not check: crate arrows, file lengths, lints switched on, citations, paths, pages written by the machine.
 
-use crate::{Fault, root, walk};
+use crate::{Fault, pages, root, walk};
 use serde_json::Value;
 use std::fs;
 use std::process::Command;
@@ -110,6 +110,9 @@ pub fn run() -> Result<(), Fault> {
         if kind == "toml" && name.ends_with("/Cargo.toml") && !text.contains("[lints]\nworkspace = true") {
             faults.push(format!("{name}: does not inherit the workspace's lints"));
         }
+    }
+    if !pages::RECIPES.holds(&fusion::recipe::reference())? {
+        faults.push(format!("{}: its keys are not those of the code; run cargo xtask reference", pages::RECIPES.page));
     }
     for fault in &faults {
         println!("tidy: {fault}");

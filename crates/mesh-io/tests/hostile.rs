@@ -121,3 +121,29 @@ fn attributes_that_are_not_finite_are_none() {
         assert_eq!(again.mesh.face_count(), 12, "{format}");
     }
 }
+
+/// Found by fuzzing: vertices in two elements, of which one alone has attributes, left fewer attributes than vertices.
+#[test]
+fn vertices_in_two_elements_share_what_attributes_they_have() {
+    let plain = "property float x\nproperty float y\nproperty float z\n";
+    let rich = &format!(
+        "{plain}property float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+    );
+    let (rows, rich_row) = ("0 0 0\n1 0 0\n", "0 1 0 0 0 1 0.5 0.25 255 0 0\n");
+    for [first, second, bodies] in
+        [[("2", plain), ("1", rich.as_str()), (rows, rich_row)], [("1", rich.as_str()), ("2", plain), (rich_row, rows)]]
+    {
+        let text = format!(
+            "ply\nformat ascii 1.0\nelement vertex {}\n{}element vertex {}\n{}element face 1\nproperty list uchar int vertex_indices\nend_header\n{}{}3 0 1 2\n",
+            first.0, first.1, second.0, second.1, bodies.0, bodies.1
+        );
+        let model = read_stream(text.as_bytes(), Format::Ply).unwrap();
+        let there = |known: &[bool]| known.iter().filter(|&&k| k).count();
+        let normals: Vec<bool> = model.normals.unwrap().as_slice().iter().map(|n| *n == DVec3::Z).collect();
+        let uvs: Vec<bool> = model.uvs.unwrap().as_slice().iter().map(|uv| *uv == [0.5, 0.25]).collect();
+        let colors: Vec<bool> = model.colors.unwrap().as_slice().iter().map(|c| *c == [1.0, 0.0, 0.0, 1.0]).collect();
+        assert_eq!([there(&normals), there(&uvs), there(&colors)], [1; 3]);
+        let rich_corner = usize::from(first.1 == plain) * 2;
+        assert!(normals[rich_corner] && uvs[rich_corner] && colors[rich_corner]);
+    }
+}

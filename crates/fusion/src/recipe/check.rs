@@ -1,5 +1,6 @@
 //! What TOML cannot check: names, ranges, order.
 
+use super::keys::check_keys;
 use super::rims::split_loop;
 use super::tables::{Creases, Depth, Part, PartCut, Plane, Silhouette};
 use super::values::{Length, Pose};
@@ -8,8 +9,10 @@ use crate::cut::{Cut, Keep, PathCut, PlaneCut};
 use crate::{cluster, compose};
 use glam::DVec3;
 use mesh_io::Format;
+use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
+use toml::de::{DeTable, Deserializer};
 use tri_intersect::Operation;
 
 impl Recipe {
@@ -18,7 +21,9 @@ impl Recipe {
     /// # Errors
     /// [`Error`], naming line and key: what is no TOML, unknown keys, wrong types, unknown or repeated names, numbers out of range.
     pub fn parse(text: &str) -> Result<Self, Error> {
-        let mut recipe: Self = toml::from_str(text).map_err(|e| Error::of(text, &e))?;
+        let tables = DeTable::parse(text).map_err(|e| Error::of(text, &e))?;
+        check_keys(text, tables.get_ref())?;
+        let mut recipe = Self::deserialize(Deserializer::from(tables)).map_err(|e| Error::of(text, &e))?;
         recipe.text = text.to_string();
         recipe.check()?;
         Ok(recipe)

@@ -25,6 +25,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `tables.rs` | what may stand in a recipe |
+//! | `vocabulary.rs`, `keys.rs` | what each table takes: the list; unknown keys refused and the reference written by it |
 //! | `values.rs` | vectors, lengths, poses, profiles |
 //! | `check.rs` | what TOML cannot check: names, ranges |
 //! | `rolling.rs` | how a ball is rolled |
@@ -37,6 +38,7 @@
 mod check;
 mod details;
 mod error;
+mod keys;
 mod placement;
 mod pose;
 mod rims;
@@ -45,8 +47,10 @@ mod run;
 mod snap;
 mod tables;
 mod values;
+mod vocabulary;
 
 pub use error::Error;
+pub use keys::reference;
 pub use tables::{
     BallRadius, Blend, Boolean, Cluster, Compose, Creases, Depth, Detail, DetailRegion, DetailRegions, On, Part,
     PartCut, Plane, Primitive, Radius, RadiusAt, Recipe, Silhouette, Snap, Step,

@@ -389,7 +389,7 @@ mod tests {
     fn what_is_wrong_is_named_by_line_and_key() {
         for (text, line, key, says) in [
             ("version = 2\noutput = \"a.off\"", 1, "version", "version 1"),
-            ("version = 1\noutput = \"a.off\"\nfoo = 3", 3, "foo", "unknown field"),
+            ("version = 1\noutput = \"a.off\"\nfoo = 3", 3, "foo", "unknown key `foo`; here may stand version, output"),
             ("version = 1\noutput = 7", 2, "output", "string"),
             ("version = 1\noutput = \"a.off\"", 1, "version", "[[part]]"),
             (

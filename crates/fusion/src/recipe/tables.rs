@@ -1,4 +1,4 @@
-//! What may stand in a recipe. Documented for its writers in docs/recipes.md.
+//! What may stand in a recipe. Keys that are in no table are refused by `keys.rs`.
 
 use super::values::{DVec3Array, Length, Rotation};
 use crate::Picked;
@@ -9,7 +9,6 @@ use toml::Spanned;
 
 /// A whole model: parts, and what is done with them.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Recipe {
     /// Version of the language of recipes: 1.
     pub version: Spanned<u32>,
@@ -73,7 +72,6 @@ impl Step {
 
 /// One input.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Part {
     /// What other tables call it.
     pub name: Spanned<String>,
@@ -96,7 +94,6 @@ pub struct Part {
 
 /// A place on a primitive. What rides there has its origin at the place, its z axis out of the surface, and its x axis along growing u.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct On {
     /// The primitive's name.
     pub primitive: Spanned<String>,
@@ -114,7 +111,6 @@ pub struct On {
 
 /// A body that parts ride on, and that is not itself in the model.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Primitive {
     /// `"box"`, `"cylinder"`, `"sphere"` or `"cone"`.
     pub shape: Spanned<String>,
@@ -147,7 +143,6 @@ pub enum Radius {
 
 /// An alignment of one opening with another.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Snap {
     /// The part's own loop; its first where left out.
     #[serde(rename = "loop")]
@@ -160,7 +155,6 @@ pub struct Snap {
 
 /// A cut by a plane, or along a path.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct PartCut {
     /// The plane; what its normal points to is removed.
     pub plane: Option<Spanned<Plane>>,
@@ -180,7 +174,6 @@ pub struct PartCut {
 
 /// A plane.
 #[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Plane {
     /// A point of it.
     pub point: DVec3Array,
@@ -190,7 +183,6 @@ pub struct Plane {
 
 /// A boolean.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Boolean {
     /// `"union"` (the default), `"difference"` or `"intersection"`.
     pub operation: Option<Spanned<String>>,
@@ -224,7 +216,6 @@ pub struct Boolean {
 
 /// A join of openings by one smooth surface.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Compose {
     /// The openings, as `"part:loop"`, loops counted from 0 as `info` lists them for the part after its cuts; `"part"` alone is all of its
     /// loops. All open boundaries of all parts where left out.
@@ -264,7 +255,6 @@ pub enum Creases {
 
 /// A silhouette; see [`crate::compose::Silhouette`].
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Silhouette {
     /// Direction of the view.
     pub view: Spanned<DVec3Array>,
@@ -292,7 +282,6 @@ pub enum Depth {
 
 /// A blend along feature curves.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Blend {
     /// Which part, by name. The only one there is where left out.
     pub part: Option<Spanned<String>>,
@@ -313,7 +302,7 @@ pub struct Blend {
     pub curves: Option<Spanned<PathBuf>>,
     /// `"arc"` (the default), `"g2"`, `"chamfer"`, `"sharp"`, `"hermite"` or `"conic=W"`.
     pub profile: Option<Spanned<String>>,
-    /// `"shrink"` (the default) or `"error"`.
+    /// `"shrink"` (the default), `"trim"` or `"error"`.
     pub overlap: Option<Spanned<String>>,
     /// `"auto"` (the default), `"stitch"`, `"field"` or `"keep"`.
     pub surface: Option<Spanned<String>>,
@@ -342,7 +331,6 @@ pub enum BallRadius {
 
 /// A cross-section at the place of a curve nearest to a point.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct ProfileAt {
     /// The point.
     pub at: DVec3Array,
@@ -352,7 +340,6 @@ pub struct ProfileAt {
 
 /// A radius at the place of a curve nearest to a point.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct RadiusAt {
     /// The point.
     pub at: DVec3Array,
@@ -362,7 +349,6 @@ pub struct RadiusAt {
 
 /// A polyhedron rounded by clusters.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Cluster {
     /// Which part, by name. The only one there is where left out.
     pub part: Option<Spanned<String>>,
@@ -392,7 +378,6 @@ pub struct Cluster {
 
 /// Detail for a region.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Detail {
     /// `"unstructured"`, or `"structured"` with `along`. Decided by `along` where left out.
     pub mode: Option<Spanned<String>>,
@@ -442,7 +427,6 @@ impl DetailRegions {
 
 /// A region of a part.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct DetailRegion {
     /// Which part, by name.
     pub part: Option<String>,

@@ -30,7 +30,6 @@ impl Length {
 
 /// A turn about an axis through the origin.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
 pub struct Rotation {
     /// The axis, of any length.
     pub axis: DVec3Array,

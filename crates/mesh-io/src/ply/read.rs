@@ -122,6 +122,17 @@ impl Contents {
         let color = columns(element, COLORS);
         let full = color.map(|c| c.map_or(1.0, |c| element.properties[c].item.full()));
         let mut row = vec![0.0; element.properties.len()];
+        let before = self.soup.positions.len();
+        // An element of vertices before this one may have had other attributes.
+        if let [Some(_), Some(_), Some(_)] = normal {
+            self.normals.resize(before, DVec3::NAN);
+        }
+        if let [Some(_), Some(_)] = uv {
+            self.uvs.resize(before, [f64::NAN; 2]);
+        }
+        if let [Some(_), Some(_), Some(_), _] = color {
+            self.colors.resize(before, [f64::NAN; 4]);
+        }
         self.soup.positions.reserve(element.count);
         for index in 0..element.count {
             body.begin_row(element, index)?;
@@ -255,6 +266,15 @@ impl Contents {
             });
             let reason = format!("a face names vertex {} of {count} (counted from 0)", self.soup.corners[corner]);
             return Err(Fault { at: face.map(|f| self.spots[f]), reason });
+        }
+        if !self.normals.is_empty() {
+            self.normals.resize(count, DVec3::NAN);
+        }
+        if !self.uvs.is_empty() {
+            self.uvs.resize(count, [f64::NAN; 2]);
+        }
+        if !self.colors.is_empty() {
+            self.colors.resize(count, [f64::NAN; 4]);
         }
         if !self.corner_uvs.is_empty() {
             self.corner_uvs.resize(self.soup.corners.len(), [f64::NAN; 2]);
