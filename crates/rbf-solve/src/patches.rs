@@ -20,6 +20,9 @@ const FEW: usize = 1000;
 /// Points per task.
 const TASK: usize = 32 * LANES;
 
+/// The cube of a point, and which point it is.
+type Keyed = ([i32; 3], u32);
+
 /// A field for many points in few cubes.
 pub struct Patches<'a> {
     field: &'a Field,
@@ -84,12 +87,11 @@ impl<'a> Patches<'a> {
     ) {
         let at = self.field.normalised(points);
         let key = |p: DVec3| (p / self.width).floor().as_ivec3().to_array();
-        let mut order: Vec<([i32; 3], u32)> =
-            at.par_iter().zip(0..at.len() as u32).map(|(&p, i)| (key(p), i)).collect();
+        let mut order: Vec<Keyed> = at.par_iter().zip(0..at.len() as u32).map(|(&p, i)| (key(p), i)).collect();
         order.par_sort_unstable();
-        let runs: Vec<&[([i32; 3], u32)]> = order.chunk_by(|a, b| a.0 == b.0).collect();
+        let runs: Vec<&[Keyed]> = order.chunk_by(|a, b| a.0 == b.0).collect();
         let cubes = self.cubes_of(&runs.iter().map(|r| r[0].0).collect::<Vec<_>>());
-        let tasks: Vec<(&Cube, &[([i32; 3], u32)])> =
+        let tasks: Vec<(&Cube, &[Keyed])> =
             cubes.iter().zip(&runs).flat_map(|(cube, run)| run.chunks(TASK).map(|part| (&**cube, part))).collect();
         let found: Vec<Vec<T>> = tasks
             .par_iter()
@@ -188,9 +190,9 @@ fn polynomials(x: &[f64; LANES]) -> [([f64; LANES], [f64; LANES]); MOST] {
     t[0].0 = [1.0; LANES];
     t[1] = (*x, [1.0; LANES]);
     for n in 2..=DEGREE {
-        for l in 0..LANES {
-            t[n].0[l] = 2.0 * x[l] * t[n - 1].0[l] - t[n - 2].0[l];
-            t[n].1[l] = 2.0 * t[n - 1].0[l] + 2.0 * x[l] * t[n - 1].1[l] - t[n - 2].1[l];
+        for (l, x) in x.iter().enumerate() {
+            t[n].0[l] = 2.0 * x * t[n - 1].0[l] - t[n - 2].0[l];
+            t[n].1[l] = 2.0 * t[n - 1].0[l] + 2.0 * x * t[n - 1].1[l] - t[n - 2].1[l];
         }
     }
     t
@@ -200,6 +202,8 @@ fn polynomials(x: &[f64; LANES]) -> [([f64; LANES], [f64; LANES]); MOST] {
 mod tests {
     use super::*;
     use crate::{Constraint, Kernel, Params};
+
+    type Evaluate<'a> = dyn Fn(&[DVec3], &mut [f64], &mut [DVec3]) + 'a;
 
     /// The twin that adds everything directly, along a tube between two rings of centres; and one point alone gets the same bits.
     #[test]
@@ -221,7 +225,7 @@ mod tests {
             .collect();
         for kernel in [Kernel::Biharmonic, Kernel::Triharmonic] {
             let field = Field::fit(&constraints, &Params { kernel, ..Params::default() }, &|_| true).unwrap();
-            let both = |f: &dyn Fn(&[DVec3], &mut [f64], &mut [DVec3]), points: &[DVec3]| {
+            let both = |f: &Evaluate<'_>, points: &[DVec3]| {
                 let (mut values, mut gradients) = (vec![0.0; points.len()], vec![DVec3::ZERO; points.len()]);
                 f(points, &mut values, &mut gradients);
                 (values, gradients)

@@ -194,7 +194,7 @@ mod tests {
         let rim: Vec<DVec3> = (0..6).map(|k| DVec3::new(at(k).1, at(k).0, 0.0)).collect();
         let with = |middle: DVec3| rim.iter().copied().chain([middle]).collect::<Vec<_>>();
         let faces = (0..6).map(|k| [k, (k + 1) % 6, 6].map(VertexId)).collect();
-        let mesh = Connected::new(TriMesh { positions: with(DVec3::ZERO), faces, ..TriMesh::default() }).unwrap();
+        let mesh = Connected::new(TriMesh { positions: with(DVec3::ZERO), faces }).unwrap();
         let table = Table::new(&mesh);
         let turns = |from: DVec3, to: DVec3| (0..6).any(|f| turns(&table, &with(from), &with(to), f));
         let across = |share: f64| share * (rim[0] + rim[1]) / 2.0;
