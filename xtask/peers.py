@@ -3,9 +3,9 @@
 usage: cargo xtask bench --peers, or: python3 xtask/peers.py PROGRAM FIT STAGE [JOB...], FIT and STAGE being the examples of
 rbf-solve and fusion of those names; all jobs where none is named
 
-Each job runs three times and the best counts. Wall-clock time means little on a busy machine, so processor seconds of all
-threads are given as well: of a peer from arrays to arrays, of ours of the whole program with reading, checking and writing, so
-that ours are an upper bound. Where a stage of ours is timed from arrays to arrays there is the clock alone.
+Each job runs a few times and the best counts. Wall-clock time means little on a busy machine, so processor seconds of all threads
+are given as well, from arrays to arrays; of joins, of our whole program with reading, checking and writing, so that ours are an
+upper bound.
 """
 
 import os
@@ -25,6 +25,9 @@ JOBS = [reading, booleans, curves, joins, remeshing, smoothing, harmonic, fits, 
 
 def main():
     program, fit, stage, *wanted = sys.argv[1:]
+    # Some peers talk.
+    sys.stdout = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
     print(f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, {time.strftime('%Y-%m-%d')}.\n")
     with tempfile.TemporaryDirectory() as folder:
         table = Table(program, fit, stage, folder)

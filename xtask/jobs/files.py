@@ -3,6 +3,7 @@
 import numpy as np
 
 from inputs import sphere
+from jobs import blender
 
 
 def reading(table):
@@ -35,6 +36,6 @@ def reading(table):
             return read
 
         for name, prepare in [("meshlib", meshlib), ("pymeshlab", pymeshlab), ("trimesh", trimesh_), ("libigl", libigl),
-                              ("trueform", trueform)]:
+                              ("trueform", trueform), ("bpy", lambda: blender.reader(path, kind))]:
             if (name, kind) != ("trueform", "ply"):
                 table.peer(job, name, prepare)

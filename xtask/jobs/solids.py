@@ -3,6 +3,7 @@
 import numpy as np
 
 from inputs import sphere
+from jobs import blender
 
 SHIFT = (0.7, 0.3, 0.2)
 
@@ -30,6 +31,11 @@ def booleans(table):
             a, b = mn.meshFromFacesVerts(f, v), mn.meshFromFacesVerts(g, w)
             return lambda: mm.boolean(a, b, mm.BooleanOperation.Union)
 
+        def meshlib_arrays():
+            import meshlib.mrmeshnumpy as mn
+            import meshlib.mrmeshpy as mm
+            return lambda: mm.boolean(mn.meshFromFacesVerts(f, v), mn.meshFromFacesVerts(g, w), mm.BooleanOperation.Union)
+
         def trueform():
             import trueform as tf
             return lambda: tf.boolean_union(tf.Mesh(f, v), tf.Mesh(g, w))
@@ -37,7 +43,10 @@ def booleans(table):
         table.peer(job, "manifold3d (solids ready)", manifold)
         table.peer(job, "manifold3d", manifold_arrays)
         table.peer(job, "meshlib (meshes ready, 32 bits)", meshlib)
+        table.peer(job, "meshlib (32 bits)", meshlib_arrays)
         table.peer(job, "trueform", trueform)
+        for solver in ("MANIFOLD", "EXACT"):
+            table.peer(job, f"bpy ({solver.lower()}, meshes ready, 32 bits)", lambda: blender.union(solver, [(v, f), (w, g)]), rounds=1)
 
 
 def curves(table):

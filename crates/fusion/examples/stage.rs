@@ -49,7 +49,11 @@ fn main() -> Result<(), Fault> {
             let kernel = if kernel == "biharmonic" { Kernel::Biharmonic } else { Kernel::Triharmonic };
             zero_set(kernel, &numbers(constraints)?, &mesh(caps)?, cell.parse()?, out)?
         }
-        _ => return Err("stage read | union | curves | remesh | harmonic | flow | field, as on the example's first page".into()),
+        _ => {
+            return Err(
+                "stage read | union | curves | remesh | harmonic | flow | field, as on the example's first page".into(),
+            );
+        }
     };
     println!(r#"{{"clock": {}, "processor": {}, "made": {made}}}"#, seconds.clock, seconds.processor);
     Ok(())
@@ -103,7 +107,13 @@ fn flow(mesh: &TriMesh, time: f64, out: &str) -> Result<(Seconds, usize), Fault>
 }
 
 /// The fit is not timed.
-fn zero_set(kernel: Kernel, constraints: &[f64], caps: &TriMesh, cell: f64, out: &str) -> Result<(Seconds, usize), Fault> {
+fn zero_set(
+    kernel: Kernel,
+    constraints: &[f64],
+    caps: &TriMesh,
+    cell: f64,
+    out: &str,
+) -> Result<(Seconds, usize), Fault> {
     let row = |c: &[f64]| Constraint::off_surface(DVec3::new(c[0], c[1], c[2]), c[3]);
     let constraints: Vec<Constraint> = constraints.chunks_exact(4).map(row).collect();
     let solver = if constraints.len() < MANY { Solver::Dense } else { Solver::Iterative { tolerance: 1e-6 } };

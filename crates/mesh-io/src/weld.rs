@@ -3,6 +3,7 @@
 use crate::model::Model;
 use glam::DVec3;
 use mesh_core::{VertexId, VertexMap};
+use rayon::prelude::*;
 
 /// What a weld did.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,15 +45,31 @@ pub fn weld_within(model: &mut Model, tolerance: f64) -> Welded {
 }
 
 /// The first vertex at each vertex's place.
+///
+/// Places are dealt out by their hash, so that each share is searched for itself, in parallel and within the cache.
 pub(crate) fn same_places(positions: &[DVec3]) -> Vec<u32> {
-    let key = |p: DVec3| (p + 0.0).to_array().map(f64::to_bits); // −0 + 0 = 0
-    let mut table = Table::new(positions.len());
-    (0..positions.len() as u32)
-        .map(|v| {
-            let bits = key(positions[v as usize]);
-            table.first(hash(bits), v, |other| key(positions[other as usize]) == bits)
-        })
-        .collect()
+    const SHARES: usize = 16;
+    let key = |v: u32| (positions[v as usize] + 0.0).to_array().map(f64::to_bits); // −0 + 0 = 0
+    let hashes: Vec<u64> = (0..positions.len() as u32).into_par_iter().map(|v| hash(key(v))).collect();
+    // The low bits choose the slot.
+    let share = |hash: u64| (hash >> 60) as usize % SHARES;
+    let mut ends = [0; SHARES];
+    hashes.iter().for_each(|&h| ends[share(h)] += 1);
+    let mut dealt: Vec<Vec<u32>> = ends.iter().map(|&n| Vec::with_capacity(n)).collect();
+    for (v, &h) in hashes.iter().enumerate() {
+        dealt[share(h)].push(v as u32);
+    }
+    let search = |vertices: &Vec<u32>| {
+        let mut table = Table::new(vertices.len());
+        let first = |&v: &u32| table.first(hashes[v as usize], v, |other| key(other) == key(v));
+        vertices.iter().map(first).collect()
+    };
+    let firsts: Vec<Vec<u32>> = dealt.par_iter().map(search).collect();
+    let mut first_of = vec![0; positions.len()];
+    for (v, first) in dealt.iter().flatten().zip(firsts.iter().flatten()) {
+        first_of[*v as usize] = *first;
+    }
+    first_of
 }
 
 fn near_places(positions: &[DVec3], tolerance: f64) -> Vec<u32> {
