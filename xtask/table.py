@@ -11,7 +11,7 @@ import numpy as np
 
 from inputs import write
 
-ROUNDS = 3
+ROUNDS = 5
 
 
 def timed(job, who=resource.RUSAGE_SELF, rounds=ROUNDS):

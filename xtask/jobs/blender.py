@@ -1,6 +1,26 @@
-"""What Blender's module does, for jobs that others do too."""
+"""What Blender's module does, for jobs that others do too: in a process of its own, since it bears no other library before it."""
+
+import importlib.metadata
+import multiprocessing
 
 import numpy as np
+
+from table import ROUNDS, timed
+
+
+def row(table, job, make, *arguments, how="", rounds=ROUNDS):
+    """`make(*arguments)` gives the job."""
+    try:
+        with multiprocessing.get_context("spawn").Pool(1) as pool:
+            wall, cpu = pool.apply(measure, (make, arguments, rounds))
+        table.add(job, f"bpy {how}{importlib.metadata.version('bpy')}", wall, cpu, "once" if rounds == 1 else "")
+    except Exception as error:  # As of any peer.
+        table.add(job, f"bpy {how}".strip(), None, None, f"{type(error).__name__}: {str(error)[:60]}")
+
+
+def measure(make, arguments, rounds):
+    wall, cpu, _ = timed(make(*arguments), rounds=rounds)
+    return wall, cpu
 
 
 def bpy():

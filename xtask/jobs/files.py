@@ -36,6 +36,7 @@ def reading(table):
             return read
 
         for name, prepare in [("meshlib", meshlib), ("pymeshlab", pymeshlab), ("trimesh", trimesh_), ("libigl", libigl),
-                              ("trueform", trueform), ("bpy", lambda: blender.reader(path, kind))]:
+                              ("trueform", trueform)]:
             if (name, kind) != ("trueform", "ply"):
                 table.peer(job, name, prepare)
+        blender.row(table, job, blender.reader, path, kind)

@@ -46,7 +46,8 @@ def booleans(table):
         table.peer(job, "meshlib (32 bits)", meshlib_arrays)
         table.peer(job, "trueform", trueform)
         for solver in ("MANIFOLD", "EXACT"):
-            table.peer(job, f"bpy ({solver.lower()}, meshes ready, 32 bits)", lambda: blender.union(solver, [(v, f), (w, g)]), rounds=1)
+            how = f"({solver.lower()}, meshes ready, 32 bits) "
+            blender.row(table, job, blender.union, solver, [(v, f), (w, g)], how=how, rounds=1)
 
 
 def curves(table):
