@@ -2,7 +2,7 @@
 
 use crate::relief::{Detail, Relief};
 use glam::{DVec2, DVec3};
-use mesh_core::{Adjacency, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, triangle_normal};
+use mesh_core::{Adjacency, Connected, FaceId, Faces, Positions, TriMesh, VertexId, triangle_normal};
 use mesh_query::TriBvh;
 use param_conformal::map_free;
 use std::collections::HashSet;
@@ -130,7 +130,7 @@ fn around(base: &Connected<TriMesh>, first: FaceId, normal: DVec3, within: impl 
     let mut next = 0;
     while let Some(&f) = all.get(next) {
         next += 1;
-        for g in (0..3).filter_map(|k| base.twin(HalfedgeId::new(f, k))).map(HalfedgeId::face) {
+        for g in base.neighbours(f) {
             if !found.contains(&g) && fits(g) {
                 found.insert(g);
                 all.push(g);

@@ -5,7 +5,8 @@ use crate::operator::{Diffusion, Operator};
 use crate::patch::{Patch, patch};
 use glam::DVec3;
 use mesh_core::{
-    Adjacency, Connected, FaceId, FaceMap, Faces, Positions, TriMesh, VertexId, Watch, triangle_normal, vertex_normals,
+    Adjacency, Connected, FaceId, FaceMap, Faces, Positions, TriMesh, VertexId, Watch, centroid, triangle_normal,
+    vertex_normals,
 };
 use std::f64::consts::TAU;
 
@@ -226,7 +227,7 @@ impl Relief {
             area += own;
             if triangle_normal(corners).dot(triangle_normal(self.base.mesh().triangle(f))) <= 0.0 {
                 folded += own;
-                place = place.or(Some(corners.iter().sum::<DVec3>() / 3.0));
+                place = place.or(Some(centroid(corners)));
             }
         }
         place.map(|at| (folded / area, at, self.handles()))

@@ -334,7 +334,7 @@ fn flat_groups(mesh: &Connected<&TriMesh>, polygon_of: Option<&[u32]>, merge: f6
     let normals: Vec<DVec3> =
         mesh.face_ids().map(|f| area_vector(mesh.mesh().triangle(f)).normalize_or_zero()).collect();
     let sine = merge.to_radians().sin();
-    for h in (0..3 * mesh.face_count()).map(HalfedgeId::from) {
+    for h in mesh.halfedge_ids() {
         let Some(t) = mesh.twin(h).filter(|&t| h < t) else { continue };
         let (f, g) = (h.face().index(), t.face().index());
         let (a, b) = (normals[f], normals[g]);

@@ -253,7 +253,7 @@ mod tests {
             let vertices = curve.vertices(&mesh);
             assert_eq!(vertices.len(), curve.halfedges.len() + usize::from(!curve.closed));
         }
-        let sharp = (0..3 * mesh.face_count()).map(HalfedgeId::from).filter(|&h| {
+        let sharp = mesh.halfedge_ids().filter(|&h| {
             mesh.edge(h).0 == h.0 && dihedral_angle(&mesh, h).is_some_and(|a| a.abs() >= 20f64.to_radians())
         });
         assert_eq!(seen.len(), sharp.count());

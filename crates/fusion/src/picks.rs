@@ -89,7 +89,7 @@ fn trace_one(
     let (mut halfedges, mut used) = (Vec::new(), HashSet::new());
     for pair in vertices.windows(2) {
         let at = mesh.position(pair[0]);
-        let edge = mesh.ring(pair[0]).find(|&h| mesh.head(h) == pair[1]);
+        let edge = mesh.halfedge(pair[0], pair[1]);
         let way = edge.map(|h| vec![h]).or_else(|| shortest_path(mesh, pair[0], pair[1], cost));
         let way = way.ok_or_else(|| {
             let to = mesh.position(pair[1]);

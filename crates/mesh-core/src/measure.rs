@@ -17,6 +17,12 @@ pub fn bounds<M: Faces + Positions>(mesh: &M) -> Bounds {
     Bounds::of(mesh.vertex_ids().map(|v| mesh.position(v)))
 }
 
+/// The middle of a triangle: the mean of its corners.
+#[inline]
+pub fn centroid(corners: [DVec3; 3]) -> DVec3 {
+    corners.iter().sum::<DVec3>() / 3.0
+}
+
 /// Surface area, in square model units. O(n), parallel.
 pub fn area<M: Faces + Positions + Sync>(mesh: &M) -> f64 {
     sum_over_faces(mesh, |triangle| area_vector(triangle).length())
@@ -75,7 +81,7 @@ pub fn edge_lengths<M: Adjacency + Positions>(mesh: &M) -> Option<EdgeLengths> {
 
 /// The lower halfedge of every edge, ascending.
 fn edges<M: Adjacency>(mesh: &M) -> impl Iterator<Item = HalfedgeId> + '_ {
-    (0..3 * mesh.face_count() as u32).map(HalfedgeId).filter(|&h| mesh.edge(h).0 == h.0)
+    mesh.halfedge_ids().filter(|&h| mesh.edge(h).0 == h.0)
 }
 
 /// The angle between the normals of the two faces at an edge, in radians in [−π, π]: 0 flat, positive convex,

@@ -174,7 +174,7 @@ mod tests {
         }
         let ball = Connected::new(shapes::icosphere(1.0, 3)).unwrap();
         let (corners, vertices) = (corner_normals(&ball, 0.7), vertex_normals(&ball));
-        for h in (0..3 * ball.face_count() as u32).map(HalfedgeId) {
+        for h in ball.halfedge_ids() {
             assert_eq!(corners[h], corners[ball.outgoing(ball.tail(h)).unwrap()]);
             assert!((corners[h] - vertices[ball.tail(h)]).length() < 1e-15);
         }

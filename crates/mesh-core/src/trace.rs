@@ -178,7 +178,7 @@ impl<M: Adjacency + Positions> PlaneWalk<'_, M> {
         let towards = self.goal - self.start;
         let mut best = None;
         for f in from.faces(self.mesh) {
-            for h in (0..3).map(|k| HalfedgeId::new(f, k)).filter(|&h| self.is_exit(h)) {
+            for h in f.halfedges().into_iter().filter(|&h| self.is_exit(h)) {
                 let heading = (self.crossing(h).position(self.mesh) - self.start).normalize_or_zero().dot(towards);
                 let leaves = match from {
                     SurfacePoint::Vertex(v) => self.mesh.tail(h) != v && self.mesh.head(h) != v,
@@ -258,7 +258,7 @@ fn straightest_in_strip<M: Adjacency + Positions>(
             return pull_straight(mesh, from, to, &exits, limit);
         }
         let at = entry.map_or(from.position(mesh), middle);
-        for h in (0..3).map(|k| HalfedgeId::new(f, k)) {
+        for h in f.halfedges() {
             if let Some(next) = mesh.twin(h)
                 && !entered.contains_key(&next.face())
             {

@@ -28,6 +28,14 @@ pub trait Faces {
         (0..self.vertex_count() as u32).map(VertexId)
     }
 
+    /// Every halfedge id in order.
+    fn halfedge_ids(&self) -> impl ExactSizeIterator<Item = HalfedgeId> + use<Self>
+    where
+        Self: Sized,
+    {
+        (0..3 * self.face_count() as u32).map(HalfedgeId)
+    }
+
     /// The vertex a halfedge leaves.
     #[inline]
     fn tail(&self, h: HalfedgeId) -> VertexId {
@@ -63,6 +71,22 @@ pub trait Adjacency: Faces {
     {
         let start = self.outgoing(v);
         Ring { mesh: self, start, next: start }
+    }
+
+    /// The triangles across the sides of `f`.
+    fn neighbours(&self, f: FaceId) -> impl Iterator<Item = FaceId>
+    where
+        Self: Sized,
+    {
+        f.halfedges().into_iter().filter_map(|h| self.twin(h)).map(HalfedgeId::face)
+    }
+
+    /// The halfedge from `a` to `b`, if they are neighbours.
+    fn halfedge(&self, a: VertexId, b: VertexId) -> Option<HalfedgeId>
+    where
+        Self: Sized,
+    {
+        self.ring(a).find(|&h| self.head(h) == b)
     }
 }
 

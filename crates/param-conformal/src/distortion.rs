@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use glam::{DVec2, DVec3};
-use mesh_core::{FaceId, Faces, Positions, VertexMap, area_vector};
+use mesh_core::{FaceId, Faces, Positions, VertexMap, area_vector, centroid};
 
 /// How far a map is from keeping shapes. Areas are shares of the whole, so that scale does not matter.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -100,6 +100,6 @@ pub(crate) fn check<M: Faces + Positions>(mesh: &M, map: impl Fn(FaceId) -> [DVe
     let [a, b, c] = map(face);
     let size = (b - a).abs().max((c - a).abs());
     let pinned = size.min_element() <= 1e-12 * size.max_element();
-    let at = space(mesh, face).iter().sum::<DVec3>() / 3.0;
+    let at = centroid(space(mesh, face));
     Err(Error::Flipped { face, at, count: 1 + flipped.count(), pinned })
 }

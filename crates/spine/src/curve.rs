@@ -31,15 +31,12 @@ impl BlendCurve {
     /// # Errors
     /// [`Error::NotAnEdge`] where two consecutive vertices are not so joined.
     pub fn from_vertices<M: Adjacency + Positions>(mesh: &M, cycle: &[VertexId]) -> Result<Self, Error> {
-        let halfedges =
-            (0..cycle.len())
-                .map(|i| {
-                    let (a, b) = (cycle[i], cycle[(i + 1) % cycle.len()]);
-                    mesh.ring(a)
-                        .find(|&h| mesh.head(h) == b && mesh.twin(h).is_some())
-                        .ok_or_else(|| Error::NotAnEdge { from: a, to: b, at: mesh.position(a) })
-                })
-                .collect::<Result<_, _>>()?;
+        let halfedge = |i: usize| {
+            let (a, b) = (cycle[i], cycle[(i + 1) % cycle.len()]);
+            let inner = mesh.halfedge(a, b).filter(|&h| mesh.twin(h).is_some());
+            inner.ok_or_else(|| Error::NotAnEdge { from: a, to: b, at: mesh.position(a) })
+        };
+        let halfedges = (0..cycle.len()).map(halfedge).collect::<Result<_, _>>()?;
         Ok(Self { halfedges, closed: true })
     }
 

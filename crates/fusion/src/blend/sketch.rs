@@ -30,17 +30,6 @@ impl Drawing {
         }
     }
 
-    /// Several surfaces as one mesh.
-    pub(super) fn together<'a>(meshes: impl Iterator<Item = &'a TriMesh>) -> Self {
-        let mut all = TriMesh::default();
-        for mesh in meshes {
-            let first = all.positions.len() as u32;
-            all.positions.extend_from_slice(&mesh.positions);
-            all.faces.extend(mesh.faces.iter().map(|f| f.map(|v| VertexId(first + v.0))));
-        }
-        Self::Mesh(all)
-    }
-
     fn line(points: impl IntoIterator<Item = DVec3>, closed: bool) -> Self {
         Self::Lines(vec![(points.into_iter().collect(), closed)])
     }

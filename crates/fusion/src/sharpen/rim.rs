@@ -87,7 +87,7 @@ impl End {
 /// The loops of border halfedges, each with the rounding on its left.
 fn loops(mesh: &Connected<TriMesh>, rounding: &Rounding) -> Result<Vec<Vec<HalfedgeId>>, Refusal> {
     let inside = |h: HalfedgeId| mesh.twin(h).is_some_and(|t| rounding.of[t.face()] == 2);
-    let own = rounding.faces.iter().flat_map(|&f| (0..3).map(move |k| HalfedgeId::new(f, k)));
+    let own = rounding.faces.iter().flat_map(|f| f.halfedges());
     let border: BTreeSet<HalfedgeId> = own.filter(|&h| !inside(h)).collect();
     if let Some(&h) = border.iter().find(|&&h| mesh.twin(h).is_none()) {
         return Err(Refusal::Boundary { at: mesh.position(mesh.tail(h)) });

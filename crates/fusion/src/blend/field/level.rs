@@ -19,7 +19,7 @@ pub(crate) fn level_curves<M: Faces + Positions>(
     let leaves = |h: HalfedgeId| negative(fine.tail(h)) && !negative(fine.head(h));
     let mut seen = vec![false; 3 * fine.face_count()];
     let mut curves = vec![];
-    for start in (0..3 * fine.face_count() as u32).map(HalfedgeId) {
+    for start in fine.halfedge_ids() {
         if seen[start.index()] || !leaves(start) {
             continue;
         }
