@@ -71,7 +71,7 @@ pub use geodesic::{Flood, FloodParams, Seed, Source, flood};
 pub use id_hash::{IdHasher, IdSet};
 pub use ids::{EdgeId, FaceId, HalfedgeId, VertexId};
 pub use loops::boundary_loops;
-pub use map::{CornerMap, EdgeMap, FaceMap, IdMap, VertexMap};
+pub use map::{CornerMap, FaceMap, IdMap, VertexMap};
 pub use measure::{
     EdgeLengths, Topology, area, bounds, centroid, component_topologies, dihedral_angle, edge_lengths, topology, volume,
 };
