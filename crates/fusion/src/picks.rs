@@ -82,7 +82,7 @@ fn trace_one(
         return Err(Error::NoCurve("a picked curve needs points at two vertices at least".into(), start));
     }
     let cost = |h: HalfedgeId| {
-        let length = mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h)));
+        let length = mesh.edge_length(h);
         let turn = dihedral_angle(mesh, h).map_or(f64::NAN, |a| a.to_degrees().abs());
         length * (1.0 - turn / FULL_TURN).max(0.0).powi(2).max(SHARP)
     };

@@ -46,7 +46,7 @@ fn sum_over_faces<M: Faces + Positions + Sync>(mesh: &M, term: impl Fn([DVec3; 3
         .into_par_iter()
         .map(|block| {
             let range = block * BLOCK..faces.min((block + 1) * BLOCK);
-            range.map(|f| term(mesh.corners(FaceId(f)).map(|v| mesh.position(v)))).sum()
+            range.map(|f| term(mesh.triangle(FaceId(f)))).sum()
         })
         .collect();
     blocks.iter().sum()
@@ -69,7 +69,7 @@ pub struct EdgeLengths {
 pub fn edge_lengths<M: Adjacency + Positions>(mesh: &M) -> Option<EdgeLengths> {
     let mut all = EdgeLengths { count: 0, min: f64::INFINITY, mean: 0.0, max: 0.0 };
     for h in edges(mesh) {
-        let length = mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h)));
+        let length = mesh.edge_length(h);
         all.count += 1;
         all.min = all.min.min(length);
         all.max = all.max.max(length);

@@ -130,7 +130,7 @@ pub fn trace<M: Adjacency + Positions>(
 }
 
 fn longest_edge<M: Faces + Positions>(mesh: &M, f: FaceId) -> f64 {
-    let [a, b, c] = mesh.corners(f).map(|v| mesh.position(v));
+    let [a, b, c] = mesh.triangle(f);
     a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 

@@ -111,6 +111,34 @@ impl<M: Adjacency> Iterator for Ring<'_, M> {
 pub trait Positions {
     /// Where a vertex is.
     fn position(&self, v: VertexId) -> DVec3;
+
+    /// The three corner points of a triangle.
+    #[inline]
+    fn triangle(&self, f: FaceId) -> [DVec3; 3]
+    where
+        Self: Faces + Sized,
+    {
+        self.corners(f).map(|v| self.position(v))
+    }
+
+    /// The points at a halfedge's tail and head.
+    #[inline]
+    fn ends(&self, h: HalfedgeId) -> [DVec3; 2]
+    where
+        Self: Faces + Sized,
+    {
+        [self.position(self.tail(h)), self.position(self.head(h))]
+    }
+
+    /// The length of a halfedge, in model units.
+    #[inline]
+    fn edge_length(&self, h: HalfedgeId) -> f64
+    where
+        Self: Faces + Sized,
+    {
+        let [a, b] = self.ends(h);
+        a.distance(b)
+    }
 }
 
 /// Takes a mesh as it is made. May refuse, which stops the maker.

@@ -47,7 +47,7 @@ impl BlendCurve {
 
     /// Length in model units.
     pub fn length<M: Faces + Positions>(&self, mesh: &M) -> f64 {
-        self.halfedges.iter().map(|&h| mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h)))).sum()
+        self.halfedges.iter().map(|&h| mesh.edge_length(h)).sum()
     }
 
     /// Both ends of an open curve, each with the unit direction in which the curve leaves it; none of a closed one.
@@ -71,7 +71,7 @@ impl BlendCurve {
         let (mut ridge, mut valley) = ((0.0, DVec3::ZERO), (0.0, DVec3::ZERO));
         for &h in &self.halfedges {
             let Some(t) = mesh.twin(h) else { continue };
-            let (a, b) = (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
+            let [a, b] = mesh.ends(h);
             let rise = (mesh.position(mesh.tail(h.prev())) - a).dot(face_normal(mesh, t));
             let kind = if rise > 0.0 { &mut valley } else { &mut ridge };
             if kind.0 == 0.0 {
@@ -90,6 +90,6 @@ impl BlendCurve {
 
 /// Unit normal of the face a halfedge bounds; zero when the face has no area.
 pub(crate) fn face_normal<M: Faces + Positions>(mesh: &M, h: HalfedgeId) -> DVec3 {
-    let [a, b, c] = mesh.corners(h.face()).map(|v| mesh.position(v));
+    let [a, b, c] = mesh.triangle(h.face());
     (b - a).cross(c - a).normalize_or_zero()
 }

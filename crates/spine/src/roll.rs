@@ -100,7 +100,7 @@ pub fn roll_or_halt<M: Adjacency + Positions + Sync>(
 }
 
 /// Beyond this reach the wedge is so sharp that a ball rolls half a dozen diameters away from the curve.
-const MAX_ALPHA: f64 = 16.0;
+pub(crate) const MAX_ALPHA: f64 = 16.0;
 
 /// A ball between planes that meet at normals φ apart touches them r·tan(φ/2) from the edge. The nineteenth
 /// twentieth of the edges sets the reach, the rest is left to the check that no foot ran off.

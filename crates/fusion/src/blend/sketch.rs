@@ -64,7 +64,7 @@ impl Book {
     /// A curve's number; the next free one if it is met for the first time.
     fn number(&mut self, mesh: &Connected<TriMesh>, curve: &BlendCurve) -> usize {
         let Some(&first) = curve.halfedges.first() else { return 0 };
-        let key = [mesh.tail(first), mesh.head(first)].map(|v| mesh.position(v));
+        let key = mesh.ends(first);
         self.curves.iter().position(|k| *k == key).unwrap_or_else(|| {
             self.curves.push(key);
             self.curves.len() - 1

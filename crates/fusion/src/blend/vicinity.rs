@@ -44,7 +44,7 @@ pub(super) fn vicinity<'a>(
     let boxes = boxes_along(whole, curves, MARGIN * params.radius);
     let around = boxes.iter().fold(Bounds::EMPTY, |a, b| a.union(*b));
     let near = |f: usize| {
-        let own = Bounds::of(whole.mesh().triangle(FaceId::from(f)));
+        let own = Bounds::of(whole.triangle(FaceId::from(f)));
         around.overlaps(&own) && boxes.iter().any(|b| b.overlaps(&own))
     };
     let mut inside: Vec<bool> = (0..whole.face_count()).into_par_iter().map(near).collect();
@@ -78,7 +78,7 @@ pub(super) fn vicinity<'a>(
 /// Boxes around stretches of the curves, wider than those by `margin`.
 fn boxes_along(mesh: &Connected<TriMesh>, curves: &[BlendCurve], margin: f64) -> Vec<Bounds> {
     let halfedges: Vec<HalfedgeId> = curves.iter().flat_map(|c| c.halfedges.iter().copied()).collect();
-    let ends = |h: &HalfedgeId| [mesh.tail(*h), mesh.head(*h)].map(|v| mesh.position(v));
+    let ends = |h: &HalfedgeId| mesh.ends(*h);
     let stretch = halfedges.len().div_ceil(BOXES).max(1);
     halfedges.chunks(stretch).map(|c| Bounds::of(c.iter().flat_map(ends)).inflated(margin)).collect()
 }

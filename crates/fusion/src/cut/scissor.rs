@@ -201,7 +201,7 @@ impl Scissors<'_> {
         for &stop in path {
             mark(&mut seen, self.mesh, stop);
         }
-        let area = |f: FaceId| area_vector(self.mesh.mesh().triangle(f)).length();
+        let area = |f: FaceId| area_vector(self.mesh.triangle(f)).length();
         let border: Vec<FaceId> = self.mesh.face_ids().filter(|f| seen[f.index()]).collect();
         let (mut all, mut largest) = (border.iter().map(|&f| area(f)).sum::<f64>(), 0.0f64);
         let mut stack = vec![];

@@ -79,7 +79,7 @@ impl End {
     fn of(mesh: &Connected<TriMesh>, walk: &[HalfedgeId]) -> Self {
         let mut vertices: Vec<VertexId> = walk.iter().map(|&h| mesh.tail(h)).collect();
         vertices.extend(walk.last().map(|&h| mesh.head(h)));
-        let beyond = walk.iter().filter_map(|&h| mesh.twin(h)).map(|t| area_vector(mesh.mesh().triangle(t.face())));
+        let beyond = walk.iter().filter_map(|&h| mesh.twin(h)).map(|t| area_vector(mesh.triangle(t.face())));
         Self { vertices, normal: beyond.sum::<DVec3>().normalize_or_zero() }
     }
 }

@@ -147,7 +147,7 @@ fn settle_on(sides: &Sides<'_>, curves: &[BlendCurve], params: &Params, watch: &
 fn full_share(mesh: &Connected<TriMesh>, curves: &[BlendCurve], radius: &RadiusField) -> f64 {
     let (mut full, mut total) = (0.0, 0.0);
     for &h in curves.iter().flat_map(|c| &c.halfedges) {
-        let [a, b] = [mesh.position(mesh.tail(h)), mesh.position(mesh.head(h))];
+        let [a, b] = mesh.ends(h);
         total += a.distance(b);
         if radius.at(a.midpoint(b)).0 >= 0.999 * radius.base {
             full += a.distance(b);

@@ -77,7 +77,7 @@ impl<'a> Sides<'a> {
         let away = p - near.point;
         let outside = if away.dot(side) >= 0.0 { 1.0 } else { -1.0 };
         // Right on the surface, the direction away from it is noise.
-        let size = self.mesh.mesh().triangle(near.face)[0].distance(p).max(near.distance);
+        let size = self.mesh.triangle(near.face)[0].distance(p).max(near.distance);
         let gradient = if near.distance > 1e-9 * size { (outside * away).normalize_or(normal) } else { normal };
         Some(Seen { distance: outside * near.distance, gradient, foot: near.point, normal })
     }
@@ -111,7 +111,7 @@ impl<'a> Sides<'a> {
 /// of a boolean's seam have no say in which those are.
 fn corner_normal(mesh: &Connected<TriMesh>, of: &FaceMap<u8>, faces: &FaceMap<DVec3>, h: HalfedgeId) -> DVec3 {
     let (own, v) = (h.face(), mesh.tail(h));
-    let area = |f: FaceId| mesh_core::area_vector(mesh.mesh().triangle(f));
+    let area = |f: FaceId| mesh_core::area_vector(mesh.triangle(f));
     let mut reference = faces[own];
     let longest = own.halfedges().map(|h| side_squared(mesh, h)).into_iter().fold(0.0, f64::max);
     if area(own).length() < SLIVER * longest {
@@ -122,7 +122,7 @@ fn corner_normal(mesh: &Connected<TriMesh>, of: &FaceMap<u8>, faces: &FaceMap<DV
     let sum: DVec3 = mesh
         .ring(v)
         .filter(|g| alike(&g.face()))
-        .map(|g| corner_angle(mesh.mesh().triangle(g.face()), g.corner()) * faces[g.face()])
+        .map(|g| corner_angle(mesh.triangle(g.face()), g.corner()) * faces[g.face()])
         .sum();
     sum.normalize_or(reference)
 }

@@ -217,7 +217,7 @@ fn check(
         beside.sort_unstable();
         beside.dedup();
         for &f in &beside {
-            let (before, after) = (triangle_normal(mesh.mesh().triangle(f)), triangle_normal(moved.triangle(f)));
+            let (before, after) = (triangle_normal(mesh.triangle(f)), triangle_normal(moved.triangle(f)));
             if before.dot(after) < LEAST_COSINE {
                 return Err(Refusal::Sheared { face: f, at: centroid(moved.triangle(f)) }.into());
             }
