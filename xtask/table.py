@@ -65,7 +65,7 @@ class Table:
         """One stage from arrays to arrays, timed by itself."""
         ran = subprocess.run([self.stage, *arguments], check=True, capture_output=True)
         made = json.loads(ran.stdout)
-        self.add(job, "fusion", made["seconds"], None, judge(made["made"]) if judge else "")
+        self.add(job, "fusion", made["clock"], made["processor"], judge(made["made"]) if judge else "")
 
     def peer(self, job, name, prepare, judge=None, rounds=ROUNDS):
         """`prepare` imports the package and gives the job; `judge` makes a note of what the job gave."""

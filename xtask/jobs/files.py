@@ -12,7 +12,7 @@ def reading(table):
     for kind in ("obj", "ply", "stl"):
         path, job = table.path(f"ball.{kind}"), f"read {len(f):,} triangles, {kind.upper()}"
         trimesh.Trimesh(v, f, process=False).export(path)
-        table.ours(job, ["features", path, "--angle", "179", "--no-radii"], ["read"])
+        table.ours_alone(job, ["read", path])
 
         def meshlib():
             import meshlib.mrmeshpy as mm

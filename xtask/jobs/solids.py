@@ -12,7 +12,7 @@ def booleans(table):
         (v, f), (w, g) = sphere(levels), sphere(levels, SHIFT)
         job = f"union of two spheres, {len(f):,} triangles each"
         paths = [table.file("a.ply", v, f), table.file("b.ply", w, g)]
-        table.ours(job, ["union", *paths, "-o", table.path("o.ply")], ["connect", "boolean"])
+        table.ours_alone(job, ["union", *paths])
 
         def manifold():
             import manifold3d as m

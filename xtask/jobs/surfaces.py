@@ -9,7 +9,7 @@ def remeshing(table):
     v, f = sphere(6)
     job, length = f"five rounds of remeshing, {len(f):,} triangles, edge length 0.02", 0.02
     path = table.file("a.ply", v, f)
-    table.ours(job, ["remesh", path, "-o", table.path("o.ply"), "--edge-length", str(length)], ["connect", "remesh"])
+    table.ours_alone(job, ["remesh", path, str(length), "5"])
 
     def gpytoolbox():
         import gpytoolbox as g

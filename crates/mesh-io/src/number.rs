@@ -42,6 +42,10 @@ pub(crate) fn plain_decimal(text: &[u8]) -> Option<(f64, usize)> {
     if text.get(at) == Some(&b'.') {
         at += 1;
         let fraction = at;
+        while let Some(eight) = eight_digits(text, at) {
+            mantissa = mantissa.wrapping_mul(100_000_000).wrapping_add(eight);
+            at += 8;
+        }
         while let Some(d) = digit(text, at) {
             mantissa = mantissa.wrapping_mul(10).wrapping_add(d);
             at += 1;
@@ -84,6 +88,20 @@ pub(crate) fn plain_decimal(text: &[u8]) -> Option<(f64, usize)> {
 fn digit(text: &[u8], at: usize) -> Option<u64> {
     let d = text.get(at)?.wrapping_sub(b'0');
     (d < 10).then_some(u64::from(d))
+}
+
+/// Eight digits at once, where eight stand: pairs of digits, of pairs and of fours are joined in the lanes of one word.
+#[inline]
+fn eight_digits(text: &[u8], at: usize) -> Option<u64> {
+    let word = u64::from_le_bytes(*text.get(at..)?.first_chunk()?);
+    let digits = word.wrapping_sub(0x3030_3030_3030_3030);
+    // A byte below `0` borrows and one above `9` carries into the high half of its own or the next.
+    if (digits | word.wrapping_add(0x4646_4646_4646_4646)) & 0x8080_8080_8080_8080 != 0 {
+        return None;
+    }
+    let pairs = (digits.wrapping_mul(10) + (digits >> 8)) & 0x00ff_00ff_00ff_00ff;
+    let fours = (pairs.wrapping_mul(100) + (pairs >> 16)) & 0x0000_ffff_0000_ffff;
+    Some((fours.wrapping_mul(10_000) + (fours >> 32)) & 0xffff_ffff)
 }
 
 /// Appends the shortest decimal that reads back as `x`, bit for bit.
@@ -155,6 +173,12 @@ mod tests {
         fn parses_as_std_does(text in "[+-]?[0-9]{0,22}(\\.[0-9]{0,22})?([eE][+-]?[0-9]{0,4})?") {
             let (ours, std) = (parse_f64(text.as_bytes()), text.parse::<f64>().ok());
             prop_assert_eq!(ours.map(f64::to_bits), std.map(f64::to_bits), "{}", text);
+        }
+
+        #[test]
+        fn eight_digits_are_as_one_by_one(text in prop::collection::vec(prop_oneof![9 => b'0'..=b'9', 1 => 0u8..=255], 8)) {
+            let one_by_one = text.iter().try_fold(0, |n, &b| b.is_ascii_digit().then(|| 10 * n + u64::from(b - b'0')));
+            prop_assert_eq!(eight_digits(&text, 0), one_by_one);
         }
 
         #[test]

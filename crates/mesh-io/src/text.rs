@@ -131,6 +131,25 @@ impl<'a> Cursor<'a> {
         })
     }
 
+    /// The token at the cursor as a natural number below 10⁹ in digits alone; if it is none, the cursor stays.
+    #[inline]
+    pub fn small_natural(&mut self) -> Option<u32> {
+        let text = &self.text[self.at..];
+        let (mut value, mut length) = (0, 0);
+        while let Some(digit) = text.get(length).map(|b| b.wrapping_sub(b'0')).filter(|&d| d < 10) {
+            if length == 9 {
+                return None;
+            }
+            value = 10 * value + u32::from(digit);
+            length += 1;
+        }
+        if length == 0 || text.get(length).is_some_and(|&b| !is_blank(b)) {
+            return None;
+        }
+        self.at += length;
+        Some(value)
+    }
+
     /// The next token of this line, a number that must be there.
     ///
     /// # Errors
@@ -191,7 +210,7 @@ pub(crate) fn show(token: &[u8]) -> String {
 /// Text of a file as it is meant: without byte order mark, and with line feeds where only carriage returns end lines.
 pub(crate) fn normalized(bytes: &[u8]) -> std::borrow::Cow<'_, [u8]> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    if bytes.contains(&b'\r') && !bytes.contains(&b'\n') {
+    if !bytes.contains(&b'\n') && bytes.contains(&b'\r') {
         bytes.iter().map(|&b| if b == b'\r' { b'\n' } else { b }).collect::<Vec<_>>().into()
     } else {
         bytes.into()

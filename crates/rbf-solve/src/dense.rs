@@ -9,9 +9,9 @@ use crate::affine::Affine;
 use crate::error::Error;
 use crate::kernel::{Cubic, Kernel, Linear, Radial};
 use crate::sum::Sum;
+use crate::wide::wide;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
-use faer::traits::pulp::Arch;
 use faer::{MatMut, Par};
 use rayon::prelude::*;
 
@@ -151,20 +151,23 @@ fn assemble<K: Radial>(system: &System, affine: &Affine) -> Vec<f64> {
             column[j] = 1.0;
             return;
         }
-        Arch::new().dispatch(|| {
-            fill_column::<K>(system, &axes, j, j, column);
-            // (I − shares)ᵀ A (I − shares), one column of it.
-            let own: [f64; 4] = [0, 1, 2, 3].map(|k| shares[k][j]);
-            let rest: [f64; 4] =
-                [0, 1, 2, 3].map(|k| columns[k][j] - (0..4).map(|l| columns[l][special[k]] * own[l]).sum::<f64>());
-            let [s0, s1, s2, s3] = [0, 1, 2, 3].map(|k| &shares[k][j..m]);
-            let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|k| &columns[k][j..m]);
-            for (i, out) in column[j..].iter_mut().enumerate() {
-                let left = s0[i] * rest[0] + s1[i] * rest[1] + s2[i] * rest[2] + s3[i] * rest[3];
-                let right = c0[i] * own[0] + c1[i] * own[1] + c2[i] * own[2] + c3[i] * own[3];
-                *out = K::SIGN * (*out - (left + right));
-            }
-        });
+        wide(
+            #[inline(always)]
+            || {
+                fill_column::<K>(system, &axes, j, j, column);
+                // (I − shares)ᵀ A (I − shares), one column of it.
+                let own: [f64; 4] = [0, 1, 2, 3].map(|k| shares[k][j]);
+                let rest: [f64; 4] =
+                    [0, 1, 2, 3].map(|k| columns[k][j] - (0..4).map(|l| columns[l][special[k]] * own[l]).sum::<f64>());
+                let [s0, s1, s2, s3] = [0, 1, 2, 3].map(|k| &shares[k][j..m]);
+                let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|k| &columns[k][j..m]);
+                for (i, out) in column[j..].iter_mut().enumerate() {
+                    let left = s0[i] * rest[0] + s1[i] * rest[1] + s2[i] * rest[2] + s3[i] * rest[3];
+                    let right = c0[i] * own[0] + c1[i] * own[1] + c2[i] * own[2] + c3[i] * own[3];
+                    *out = K::SIGN * (*out - (left + right));
+                }
+            },
+        );
         for &s in special {
             if s > j {
                 column[s] = 0.0;

@@ -9,14 +9,18 @@ use crate::kernel::{Kernel, Radial, with_kernel};
 use crate::meet::Meetings;
 use crate::octree::{Frame, Octree};
 use crate::sum::{LANES, add_block};
+use crate::wide::wide;
 use faer::linalg::matmul::matmul;
-use faer::traits::pulp::Arch;
 use faer::{Accum, MatMut, MatRef, Par};
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-/// Pairs of cells per matrix product.
+/// Points per leaf: with so many, sums over those nearby take about as much time as expansions.
+const LEAF: usize = 400;
+/// Pairs of cells per matrix product, at least.
 const BATCH: usize = 64;
+/// The ways to turn a cube's axes.
+const TURNS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 /// Blocks of rows with a common number of columns.
 const BLOCKS: usize = 6;
 /// Products of target and source matter up to this sum of squared degrees, as a share of the largest squared degree of one.
@@ -30,8 +34,32 @@ pub(crate) struct Translations {
     matrices: Vec<Vec<f64>>,
     /// Rows of every matrix in blocks: first row, last row, and how many columns matter to them.
     blocks: Vec<(usize, usize, usize)>,
-    /// Where each product stands by degree.
-    rank: Vec<usize>,
+    /// For each of the [`TURNS`], where each product of the turned axes stands by degree.
+    turned: [Vec<u32>; 6],
+    /// For each set of mirrored axes, the sign of each product: odd polynomials change theirs.
+    signs: [Vec<f64>; 8],
+}
+
+/// How an offset comes from a sorted absolute one.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Pose {
+    matrix: usize,
+    turn: usize,
+    mirror: usize,
+}
+
+impl Pose {
+    fn of(offset: IVec3) -> Self {
+        let o = offset.to_array();
+        let mut axes = [0, 1, 2];
+        axes.sort_by_key(|&k| (-o[k].abs(), k));
+        let key = IVec3::from(axes.map(|k| o[k].abs()));
+        Self {
+            matrix: canonical().iter().position(|&c| c == key).unwrap_or(0),
+            turn: TURNS.iter().position(|&t| t == axes).unwrap_or(0),
+            mirror: (0..3).filter(|&k| o[k] < 0).map(|k| 1 << k).sum(),
+        }
+    }
 }
 
 impl Translations {
@@ -48,7 +76,7 @@ impl Translations {
             .into_par_iter()
             .map(|o| {
                 let mut table = vec![0.0; nodes.len() * nodes.len()];
-                Arch::new().dispatch(|| {
+                wide(#[inline(always)] || {
                     for (row, &t) in table.chunks_mut(nodes.len()).zip(&nodes) {
                         let from = t - 2.0 * o.as_dvec3();
                         for (out, &s) in row.iter_mut().zip(&nodes) {
@@ -57,7 +85,7 @@ impl Translations {
                         }
                     }
                 });
-                Arch::new().dispatch(|| basis.analyse_pairs(&table, &sorted))
+                wide(#[inline(always)] || basis.analyse_pairs(&table, &sorted))
             })
             .collect());
         // A product of high degree in the target is felt with products of low degree in the source only.
@@ -75,28 +103,23 @@ impl Translations {
                 (w[0], w[1], sorted.partition_point(|&i| squared(i) as f64 + least <= joint))
             })
             .collect();
-        Self { basis, kernel, matrices, blocks, rank }
+        let p = basis.order;
+        let place = |[a, b, c]: [usize; 3]| (a * p + b) * p + c;
+        let mut full = vec![0; p * p * p];
+        for (d, &rank) in basis.degrees.iter().zip(&rank) {
+            full[place(*d)] = rank as u32;
+        }
+        let turned = TURNS.map(|axes| basis.degrees.iter().map(|d| full[place(axes.map(|k| d[k]))]).collect());
+        let odd =
+            |d: &[usize; 3], mirror: usize| (0..3).filter(|k| mirror >> k & 1 == 1).map(|k| d[k]).sum::<usize>() % 2;
+        let sign = |mirror: usize| basis.degrees.iter().map(|d| if odd(d, mirror) == 1 { -1.0 } else { 1.0 }).collect();
+        let signs = [0, 1, 2, 3, 4, 5, 6, 7].map(sign);
+        Self { basis, kernel, matrices, blocks, turned, signs }
     }
 
-    /// The matrix of an offset, and for each product its name in that matrix and its sign.
-    fn of(&self, offset: IVec3) -> (&[f64], Vec<(usize, f64)>) {
-        let o = offset.to_array();
-        let mut axes = [0, 1, 2];
-        axes.sort_by_key(|&k| (-o[k].abs(), k));
-        let key = IVec3::from(axes.map(|k| o[k].abs()));
-        let which = canonical().iter().position(|&c| c == key).unwrap_or(0);
-        let p = self.basis.order;
-        let mut full = vec![0; p * p * p];
-        for (i, d) in self.basis.degrees.iter().enumerate() {
-            full[(d[0] * p + d[1]) * p + d[2]] = self.rank[i];
-        }
-        let name = |d: &[usize; 3]| {
-            let turned = axes.map(|k| d[k]);
-            // Odd polynomials change sign in a mirror.
-            let odd: usize = (0..3).filter(|&k| o[k] < 0).map(|k| d[k]).sum();
-            (full[(turned[0] * p + turned[1]) * p + turned[2]], if odd % 2 == 1 { -1.0 } else { 1.0 })
-        };
-        (&self.matrices[which], self.basis.degrees.iter().map(name).collect())
+    /// Where each product stands in the matrix of a pose, and its sign there.
+    fn names(&self, pose: Pose) -> impl Iterator<Item = (usize, f64)> {
+        self.turned[pose.turn].iter().map(|&n| n as usize).zip(self.signs[pose.mirror].iter().copied())
     }
 }
 
@@ -104,6 +127,21 @@ impl Translations {
 fn canonical() -> Vec<IVec3> {
     let all = (2..4).flat_map(|a| (0..=a).flat_map(move |b| (0..=b).map(move |c| IVec3::new(a, b, c))));
     all.collect()
+}
+
+/// Targets that one matrix product serves, each with its sources.
+#[derive(Default)]
+struct Batch<'a> {
+    targets: Vec<(&'a mut [f64], &'a [(Pose, u32, u32)])>,
+    columns: usize,
+}
+
+/// The degree of expansions that lose less than a fit does, at 1e-6 of the extent.
+pub(crate) fn degree(kernel: Kernel) -> usize {
+    match kernel {
+        Kernel::Biharmonic => 7,
+        Kernel::Triharmonic => 9,
+    }
 }
 
 /// Two trees, and how their cells meet; ready for any weights.
@@ -114,22 +152,26 @@ pub(crate) struct Plan<'a> {
     /// None where the points are the centres themselves.
     targets: Option<Octree>,
     meetings: Meetings,
+    /// Of the meetings apart: how their offset lies, the target, the source. By matrix and target, so that a product knows no
+    /// other's targets.
+    far: Vec<(Pose, u32, u32)>,
 }
 
 impl<'a> Plan<'a> {
     /// Sums over `sources` at `targets`, or at the sources themselves.
     pub(crate) fn new(translations: &'a Translations, sources: &[DVec3], targets: Option<&[DVec3]>) -> Self {
         let frame = Frame::around(sources.iter().chain(targets.unwrap_or_default()));
-        // Larger leaves where expansions are long, so that both take about as much time.
-        let leaf = (translations.basis.len() / 3).clamp(48, 320);
-        let source_tree = Octree::new(sources, &frame, leaf);
-        let target_tree = targets.map(|t| Octree::new(t, &frame, leaf));
-        let meetings = Meetings::new(
+        let source_tree = Octree::new(sources, &frame, LEAF);
+        let target_tree = targets.map(|t| Octree::new(t, &frame, LEAF));
+        let mut meetings = Meetings::new(
             target_tree.as_ref().unwrap_or(&source_tree),
             &source_tree,
             translations.basis.nodes.len().pow(3),
         );
-        Self { translations, frame, sources: source_tree, targets: target_tree, meetings }
+        let mut far: Vec<(Pose, u32, u32)> =
+            std::mem::take(&mut meetings.far).into_iter().map(|(offset, t, s)| (Pose::of(offset), t, s)).collect();
+        far.par_sort_unstable_by_key(|&(pose, t, s)| (pose.matrix, t, pose, s));
+        Self { translations, frame, sources: source_tree, targets: target_tree, meetings, far }
     }
 
     /// Σ wⱼ φ(|x − cⱼ|) at every target, in their own order.
@@ -169,70 +211,83 @@ impl<'a> Plan<'a> {
         let q = basis.len();
         let mut outer = vec![0.0; tree.cells.len() * q];
         outer.par_chunks_mut(q).enumerate().filter(|(c, _)| tree.cells[*c].is_leaf()).for_each(|(c, out)| {
-            Arch::new().dispatch(|| {
-                let cell = &tree.cells[c];
-                for (at, &weight) in (cell.start..cell.end).zip(&weights[cell.start..cell.end]) {
-                    basis.gather_point(self.local(tree, c, at), weight, out);
-                }
-            });
+            wide(
+                #[inline(always)]
+                || {
+                    let cell = &tree.cells[c];
+                    for (at, &weight) in (cell.start..cell.end).zip(&weights[cell.start..cell.end]) {
+                        basis.gather_point(self.local(tree, c, at), weight, out);
+                    }
+                },
+            );
         });
         for (first, last) in levels(tree).into_iter().rev() {
             let (above, below) = outer.split_at_mut(last * q);
             above[first * q..].par_chunks_mut(q).enumerate().for_each(|(i, parent)| {
-                Arch::new().dispatch(|| {
-                    for kid in tree.cells[first + i].kids() {
-                        basis.gather(&below[(kid - last) * q..][..q], octant(tree, kid), parent);
-                    }
-                });
+                wide(
+                    #[inline(always)]
+                    || {
+                        for kid in tree.cells[first + i].kids() {
+                            basis.gather(&below[(kid - last) * q..][..q], octant(tree, kid), parent);
+                        }
+                    },
+                );
             });
         }
         outer
     }
 
-    /// Grid to grid, one offset at a time; a target has at most one source at each.
+    /// Grid to grid, one matrix after the other.
     fn translate<K: Radial>(&self, outer: &[f64], inner: &mut [f64]) {
         let q = self.translations.basis.len();
-        for pairs in self.meetings.far.chunk_by(|a, b| a.0 == b.0) {
-            let (matrix, name) = self.translations.of(pairs[0].0);
-            let mut wanted = pairs.iter().peekable();
-            let columns: Vec<(&mut [f64], usize)> = inner
-                .chunks_mut(q)
-                .enumerate()
-                .filter_map(|(c, column)| wanted.next_if(|p| p.1 as usize == c).map(|p| (column, p.2 as usize)))
-                .collect();
-            let mut batches: Vec<Vec<(&mut [f64], usize)>> = vec![];
-            for pair in columns {
-                match batches.last_mut() {
-                    Some(batch) if batch.len() < BATCH => batch.push(pair),
-                    _ => batches.push(vec![pair]),
+        for pairs in self.far.chunk_by(|a, b| a.0.matrix == b.0.matrix) {
+            let mut targets = inner.chunks_mut(q).enumerate();
+            let mut batches: Vec<Batch<'_>> = vec![];
+            for of_target in pairs.chunk_by(|a, b| a.1 == b.1) {
+                let Some((_, expansion)) = targets.find(|(c, _)| *c == of_target[0].1 as usize) else { continue };
+                if batches.last().is_none_or(|batch| batch.columns >= BATCH) {
+                    batches.push(Batch::default());
+                }
+                if let Some(batch) = batches.last_mut() {
+                    batch.columns += of_target.len();
+                    batch.targets.push((expansion, of_target));
                 }
             }
-            batches.into_par_iter().for_each(|batch| {
-                let mut from = vec![0.0; q * batch.len()];
-                for (column, (_, source)) in from.chunks_mut(q).zip(&batch) {
-                    let width = self.frame.cell_width(self.sources.cells[*source].level);
-                    let scale = K::value(0.25 * width * width, 0.5 * width);
-                    for (&(n, sign), v) in name.iter().zip(&outer[source * q..]) {
-                        column[n] = sign * v * scale;
-                    }
+            batches.into_par_iter().for_each(|batch| self.translate_batch::<K>(outer, batch));
+        }
+    }
+
+    fn translate_batch<K: Radial>(&self, outer: &[f64], batch: Batch<'_>) {
+        let Some(&(pose, ..)) = batch.targets.first().and_then(|t| t.1.first()) else { return };
+        let (q, count, matrix) =
+            (self.translations.basis.len(), batch.columns, &self.translations.matrices[pose.matrix]);
+        let mut from = vec![0.0; q * count];
+        let mut columns = from.chunks_mut(q);
+        for (&(pose, _, source), column) in batch.targets.iter().flat_map(|t| t.1).zip(&mut columns) {
+            let width = self.frame.cell_width(self.sources.cells[source as usize].level);
+            let scale = K::value(0.25 * width * width, 0.5 * width);
+            for ((n, sign), v) in self.translations.names(pose).zip(&outer[source as usize * q..]) {
+                column[n] = sign * v * scale;
+            }
+        }
+        let mut to = vec![0.0; q * count];
+        for &(first, last, columns) in &self.translations.blocks {
+            matmul(
+                MatMut::from_column_major_slice_mut(&mut to, q, count).subrows_mut(first, last - first),
+                Accum::Replace,
+                MatRef::from_column_major_slice(matrix, q, q).submatrix(first, 0, last - first, columns),
+                MatRef::from_column_major_slice(&from, q, count).subrows(0, columns),
+                1.0,
+                Par::Seq,
+            );
+        }
+        let mut columns = to.chunks(q);
+        for (expansion, pairs) in batch.targets {
+            for (&(pose, ..), column) in pairs.iter().zip(&mut columns) {
+                for (t, (n, sign)) in expansion.iter_mut().zip(self.translations.names(pose)) {
+                    *t += sign * column[n];
                 }
-                let mut to = vec![0.0; q * batch.len()];
-                for &(first, last, columns) in &self.translations.blocks {
-                    matmul(
-                        MatMut::from_column_major_slice_mut(&mut to, q, batch.len()).subrows_mut(first, last - first),
-                        Accum::Replace,
-                        MatRef::from_column_major_slice(matrix, q, q).submatrix(first, 0, last - first, columns),
-                        MatRef::from_column_major_slice(&from, q, batch.len()).subrows(0, columns),
-                        1.0,
-                        Par::Seq,
-                    );
-                }
-                for (column, (target, _)) in to.chunks(q).zip(batch) {
-                    for (t, &(n, sign)) in target.iter_mut().zip(&name) {
-                        *t += sign * column[n];
-                    }
-                }
-            });
+            }
         }
     }
 
@@ -276,9 +331,12 @@ impl<'a> Plan<'a> {
             let (above, below) = inner.split_at_mut(first * q);
             below[..(last - first) * q].par_chunks_mut(q).enumerate().for_each(|(i, child)| {
                 let kid = first + i;
-                Arch::new().dispatch(|| {
-                    self.translations.basis.scatter(&above[parent[kid] * q..][..q], octant(tree, kid), child);
-                });
+                wide(
+                    #[inline(always)]
+                    || {
+                        self.translations.basis.scatter(&above[parent[kid] * q..][..q], octant(tree, kid), child);
+                    },
+                );
             });
         }
     }
@@ -296,11 +354,14 @@ impl<'a> Plan<'a> {
         let q = basis.len();
         let values = &inner[leaf * q..][..q];
         let mut out = vec![0.0; cell.len()];
-        Arch::new().dispatch(|| {
-            for (out, at) in out.iter_mut().zip(cell.start..) {
-                *out = basis.value(self.local(targets, leaf, at), values);
-            }
-        });
+        wide(
+            #[inline(always)]
+            || {
+                for (out, at) in out.iter_mut().zip(cell.start..) {
+                    *out = basis.value(self.local(targets, leaf, at), values);
+                }
+            },
+        );
         let at = [&targets.x, &targets.y, &targets.z].map(|a| a[cell.start..cell.end].to_vec());
         for &(_, s) in of(&self.meetings.near, leaf) {
             let source = &self.sources.cells[s as usize];
@@ -316,15 +377,18 @@ impl<'a> Plan<'a> {
 }
 
 fn add_all<K: Radial>(at: &[Vec<f64>; 3], centres: [&[f64]; 3], weights: &[f64], out: &mut [f64]) {
-    Arch::new().dispatch(|| {
-        for (b, out) in out.chunks_mut(LANES).enumerate() {
-            let block =
-                std::array::from_fn(|k| std::array::from_fn(|l| at[k].get(b * LANES + l).copied().unwrap_or(0.0)));
-            let mut sum = [0.0; LANES];
-            add_block::<K>(centres, weights, &block, &mut sum);
-            out.iter_mut().zip(&sum).for_each(|(o, s)| *o += s);
-        }
-    });
+    wide(
+        #[inline(always)]
+        || {
+            for (b, out) in out.chunks_mut(LANES).enumerate() {
+                let block =
+                    std::array::from_fn(|k| std::array::from_fn(|l| at[k].get(b * LANES + l).copied().unwrap_or(0.0)));
+                let mut sum = [0.0; LANES];
+                add_block::<K>(centres, weights, &block, &mut sum);
+                out.iter_mut().zip(&sum).for_each(|(o, s)| *o += s);
+            }
+        },
+    );
 }
 
 /// The pairs of one target in a sorted list.

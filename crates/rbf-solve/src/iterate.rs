@@ -6,7 +6,7 @@ use crate::admit::System;
 use crate::affine::Affine;
 use crate::chebyshev::MOST;
 use crate::error::Error;
-use crate::far::{Plan, Translations};
+use crate::far::{Plan, Translations, degree};
 use crate::kernel::{Kernel, Radial, with_kernel};
 use crate::screen::Screen;
 use crate::sum::Sum;
@@ -22,15 +22,6 @@ const REDUCTION: f64 = 1e-3;
 const FINEST: usize = MOST - 1;
 /// Up to this many points residuals are measured by direct sums.
 const FEW: usize = 40_000;
-
-/// Degrees of the expansions that drive the iteration, each taken where the one before gains nothing more. The smoother the
-/// kernel and the nearer the points, the smaller the eigenvalues that must not drown.
-fn driving(kernel: Kernel) -> [usize; 2] {
-    match kernel {
-        Kernel::Biharmonic => [7, FINEST],
-        Kernel::Triharmonic => [9, FINEST],
-    }
-}
 
 /// What comes after sums that are too coarse.
 #[derive(Clone, Copy)]
@@ -119,11 +110,14 @@ pub(crate) fn solve(
     rescue: Rescue,
     step: &dyn Fn(f64) -> Result<(), Error>,
 ) -> Result<(Sum, Vec<f64>), Error> {
-    let [coarse, fine] = driving(kernel);
-    match rescue {
-        Rescue::Finer => solve_by(&[coarse, fine], system, affine, kernel, tolerance, step),
-        Rescue::Dense => solve_by(&[coarse], system, affine, kernel, tolerance, step),
-    }
+    // Each drives the iteration until it gains nothing more: the smoother the kernel and the nearer the points, the smaller the
+    // eigenvalues that must not drown.
+    let degrees = [degree(kernel), FINEST];
+    let taken = match rescue {
+        Rescue::Finer => &degrees[..],
+        Rescue::Dense => &degrees[..1],
+    };
+    solve_by(taken, system, affine, kernel, tolerance, step)
 }
 
 /// [`solve`] with sums of other degrees.

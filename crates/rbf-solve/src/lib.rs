@@ -29,6 +29,7 @@
 //! | `far.rs`, `octree.rs`, `meet.rs`, `chebyshev.rs` | sums over many centres at many points |
 //! | `field.rs`, `patches.rs` | `Field`: fit, value, gradient; the same at many points along a surface |
 //! | `thin.rs` | fewer constraints far from the boundary |
+//! | `wide.rs` | loops for the machine's widest vectors |
 
 #![allow(clippy::inline_always, reason = "only what is inlined is compiled for the widest vectors of the machine")]
 
@@ -51,6 +52,7 @@ mod patches;
 mod screen;
 mod sum;
 mod thin;
+mod wide;
 
 pub use constraint::Constraint;
 pub use error::Error;

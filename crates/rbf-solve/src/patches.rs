@@ -7,7 +7,7 @@ use crate::chebyshev::{Basis, MOST};
 use crate::field::Field;
 use crate::kernel::with_kernel;
 use crate::sum::{Block, LANES, Sum, spread};
-use faer::traits::pulp::Arch;
+use crate::wide::wide;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -96,14 +96,17 @@ impl<'a> Patches<'a> {
         let found: Vec<Vec<T>> = tasks
             .par_iter()
             .map(|(cube, part)| {
-                Arch::new().dispatch(|| {
-                    let blocks = part.chunks(LANES).flat_map(|some| {
-                        let mut places = [at[some[0].1 as usize]; LANES];
-                        places.iter_mut().zip(some).for_each(|(place, &(_, i))| *place = at[i as usize]);
-                        evaluate(cube, &spread(&places)).into_iter().take(some.len())
-                    });
-                    blocks.collect()
-                })
+                wide(
+                    #[inline(always)]
+                    || {
+                        let blocks = part.chunks(LANES).flat_map(|some| {
+                            let mut places = [at[some[0].1 as usize]; LANES];
+                            places.iter_mut().zip(some).for_each(|(place, &(_, i))| *place = at[i as usize]);
+                            evaluate(cube, &spread(&places)).into_iter().take(some.len())
+                        });
+                        blocks.collect()
+                    },
+                )
             })
             .collect();
         for (&(_, i), value) in order.iter().zip(found.into_iter().flatten()) {

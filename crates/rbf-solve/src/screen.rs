@@ -7,7 +7,7 @@
 use crate::affine::Affine;
 use crate::kernel::Radial;
 use crate::order::CoarseToFine;
-use faer::traits::pulp::Arch;
+use crate::wide::wide;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -86,44 +86,47 @@ impl<'a, K: Radial> Reduced<'a, K> {
         // Lower triangle by columns, the point itself in the last row.
         let mut l = vec![0.0; n * n];
         let mut lost = LOST;
-        Arch::new().dispatch(|| {
-            for c in 0..n {
-                let (done, rest) = l.split_at_mut(c * n);
-                let column = &mut rest[c..n];
-                let [s0, s1, s2, s3] = [0, 1, 2, 3].map(|a| &shares[a][c..]);
-                let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|a| &columns[a][c..]);
-                let (x, y, z) = (&x[c..], &y[c..], &z[c..]);
-                for (r, out) in column.iter_mut().enumerate() {
-                    let (dx, dy, dz) = (x[r] - x[0], y[r] - y[0], z[r] - z[0]);
-                    let r2 = dx * dx + dy * dy + dz * dz;
-                    let left = s0[r] * c0[0] + s1[r] * c1[0] + s2[r] * c2[0] + s3[r] * c3[0];
-                    let right = c0[r] * s0[0] + c1[r] * s1[0] + c2[r] * s2[0] + c3[r] * s3[0];
-                    *out = K::SIGN * (K::value(r2, r2.sqrt()) - (left + right));
+        wide(
+            #[inline(always)]
+            || {
+                for c in 0..n {
+                    let (done, rest) = l.split_at_mut(c * n);
+                    let column = &mut rest[c..n];
+                    let [s0, s1, s2, s3] = [0, 1, 2, 3].map(|a| &shares[a][c..]);
+                    let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|a| &columns[a][c..]);
+                    let (x, y, z) = (&x[c..], &y[c..], &z[c..]);
+                    for (r, out) in column.iter_mut().enumerate() {
+                        let (dx, dy, dz) = (x[r] - x[0], y[r] - y[0], z[r] - z[0]);
+                        let r2 = dx * dx + dy * dy + dz * dz;
+                        let left = s0[r] * c0[0] + s1[r] * c1[0] + s2[r] * c2[0] + s3[r] * c3[0];
+                        let right = c0[r] * s0[0] + c1[r] * s1[0] + c2[r] * s2[0] + c3[r] * s3[0];
+                        *out = K::SIGN * (K::value(r2, r2.sqrt()) - (left + right));
+                    }
+                    let whole = column[0];
+                    for before in done.chunks(n) {
+                        let factor = before[c];
+                        column.iter_mut().zip(&before[c..]).for_each(|(v, b)| *v -= factor * b);
+                    }
+                    // A point that those before it determine to working precision is passed over.
+                    let kept = column[0] > LOST * whole;
+                    let scale = if kept { 1.0 / column[0].sqrt() } else { 0.0 };
+                    for v in column.iter_mut() {
+                        *v *= scale;
+                    }
+                    if c == k {
+                        lost = if kept { column[0] } else { (LOST * whole.abs()).sqrt() };
+                    }
                 }
-                let whole = column[0];
-                for before in done.chunks(n) {
-                    let factor = before[c];
-                    column.iter_mut().zip(&before[c..]).for_each(|(v, b)| *v -= factor * b);
+                // The last row solved backwards for the weights.
+                let mut weights: Vec<f64> = (0..k).map(|c| l[c * n + k]).collect();
+                for c in (0..k).rev() {
+                    let column = &l[c * n..][..n];
+                    let known: f64 = weights[c + 1..].iter().zip(&column[c + 1..k]).map(|(w, v)| w * v).sum();
+                    weights[c] = if column[c] > 0.0 { (weights[c] - known) / column[c] } else { 0.0 };
                 }
-                // A point that those before it determine to working precision is passed over.
-                let kept = column[0] > LOST * whole;
-                let scale = if kept { 1.0 / column[0].sqrt() } else { 0.0 };
-                for v in column.iter_mut() {
-                    *v *= scale;
-                }
-                if c == k {
-                    lost = if kept { column[0] } else { (LOST * whole.abs()).sqrt() };
-                }
-            }
-            // The last row solved backwards for the weights.
-            let mut weights: Vec<f64> = (0..k).map(|c| l[c * n + k]).collect();
-            for c in (0..k).rev() {
-                let column = &l[c * n..][..n];
-                let known: f64 = weights[c + 1..].iter().zip(&column[c + 1..k]).map(|(w, v)| w * v).sum();
-                weights[c] = if column[c] > 0.0 { (weights[c] - known) / column[c] } else { 0.0 };
-            }
-            (weights, if lost > 0.0 { 1.0 / (lost * lost) } else { 1.0 })
-        })
+                (weights, if lost > 0.0 { 1.0 / (lost * lost) } else { 1.0 })
+            },
+        )
     }
 }
 

@@ -4,7 +4,7 @@
 //! machine's vectors, nor on threads, nor on what else is in the batch.
 
 use crate::kernel::{Kernel, Radial, with_kernel};
-use faer::traits::pulp::Arch;
+use crate::wide::wide;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -40,6 +40,11 @@ impl Sum {
         }
     }
 
+    pub(crate) fn centres(&self) -> Vec<DVec3> {
+        let place = |((&x, &y), &z)| DVec3::new(x, y, z);
+        self.x.iter().zip(&self.y).zip(&self.z).map(place).collect()
+    }
+
     /// Takes weights in order of unknowns.
     pub(crate) fn set_weights(&mut self, weights: &[f64]) {
         let (values, tilts) = weights.split_at(self.weights.len());
@@ -53,7 +58,7 @@ impl Sum {
     /// The sum at every point. O(points · centres).
     pub(crate) fn values(&self, kernel: Kernel, points: &[DVec3], out: &mut [f64]) {
         with_kernel!(kernel, K => out.par_chunks_mut(TASK).zip(points.par_chunks(TASK)).for_each(|(out, points)| {
-            Arch::new().dispatch(|| {
+            wide(#[inline(always)] || {
                 for (out, points) in out.chunks_mut(LANES).zip(points.chunks(LANES)) {
                     out.copy_from_slice(&self.block_values::<K>(&spread(points))[..points.len()]);
                 }
@@ -64,7 +69,7 @@ impl Sum {
     /// The gradient of the sum at every point. O(points · centres).
     pub(crate) fn gradients(&self, kernel: Kernel, points: &[DVec3], out: &mut [DVec3]) {
         with_kernel!(kernel, K => out.par_chunks_mut(TASK).zip(points.par_chunks(TASK)).for_each(|(out, points)| {
-            Arch::new().dispatch(|| {
+            wide(#[inline(always)] || {
                 for (out, points) in out.chunks_mut(LANES).zip(points.chunks(LANES)) {
                     let [x, y, z] = self.block_gradients::<K>(&spread(points));
                     for (l, out) in out.iter_mut().enumerate() {
@@ -89,7 +94,7 @@ impl Sum {
         }
         let tasks = values.par_chunks_mut(TASK).zip(gradients.par_chunks_mut(TASK)).zip(points.par_chunks(TASK));
         with_kernel!(kernel, K => tasks.for_each(|((values, gradients), points)| {
-            Arch::new().dispatch(|| {
+            wide(#[inline(always)] || {
                 let blocks = values.chunks_mut(LANES).zip(gradients.chunks_mut(LANES)).zip(points.chunks(LANES));
                 for ((values, gradients), points) in blocks {
                     let (value, [x, y, z]) = self.block_of_both::<K>(&spread(points));

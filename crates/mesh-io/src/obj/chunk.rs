@@ -5,12 +5,15 @@ use crate::notes::Notes;
 use crate::text::{Cursor, show};
 use glam::DVec3;
 
-/// A corner's reference: absolute from 0, or counted from the start of the chunk and offset by [`RELATIVE`].
-pub(super) type Ref = i64;
+/// A corner's reference: absolute from 0 below [`FIRST_RELATIVE`], or counted from the start of the chunk and offset by [`RELATIVE`].
+pub(super) type Ref = u32;
 /// A corner that names no element of this kind.
-pub(super) const NO_REF: Ref = i64::MIN;
+pub(super) const NO_REF: Ref = u32::MAX;
+/// A reference to what no file of this size holds.
+const NOWHERE: Ref = u32::MAX - 1;
+const FIRST_RELATIVE: Ref = 1 << 31;
 /// Marks references that need the number of elements before the chunk added.
-const RELATIVE: i64 = 1 << 60;
+const RELATIVE: i64 = 3 << 30;
 
 /// Statements that hold for the faces after them.
 pub(super) enum Mark {
@@ -42,18 +45,17 @@ pub(super) struct Chunk {
     pub unknown_lines: usize,
 }
 
-/// A reference made absolute, given how many elements come before the chunk; `None` before the first element.
+/// A reference made absolute, given how many elements come before the chunk; `None` before the first element and beyond two thousand million.
 pub(super) fn resolve(r: Ref, before: usize) -> Option<usize> {
-    let index = if r >= RELATIVE / 2 { r - RELATIVE + before.cast_signed() as i64 } else { r };
-    usize::try_from(index).ok()
+    match r {
+        NO_REF | NOWHERE => None,
+        0..FIRST_RELATIVE => Some(r as usize),
+        _ => usize::try_from(i64::from(r) - RELATIVE + before.cast_signed() as i64).ok(),
+    }
 }
 
 pub(super) fn parse(text: &[u8], base: usize) -> Result<Chunk, Fault> {
     let mut chunk = Chunk::default();
-    // Typical lines have 20 to 40 bytes; growing from a third of that wastes little.
-    chunk.positions.reserve(text.len() / 120);
-    chunk.vertex_refs.reserve(text.len() / 20);
-    chunk.face_offsets.reserve(text.len() / 60);
     let mut cursor = Cursor::joining_lines(text, base);
     loop {
         let start = cursor.offset();
@@ -182,6 +184,10 @@ impl Chunk {
     #[inline]
     fn corner(&mut self, cursor: &mut Cursor) -> Result<(), Fault> {
         let start = cursor.offset();
+        if let Some(v) = cursor.small_natural() {
+            self.vertex_refs.push(v.checked_sub(1).ok_or_else(|| zero(start))?);
+            return Ok(());
+        }
         let token = cursor.token().unwrap_or_default();
         let bad = || Fault::text(start, format!("{} is not a face corner", show(token)));
         let (v, rest) = index(token).ok_or_else(bad)?;
@@ -211,8 +217,11 @@ fn zero(start: usize) -> Fault {
 fn reference(index: i64, count: usize) -> Option<Ref> {
     match index {
         0 => None,
-        1.. => Some(index - 1),
-        _ => Some(RELATIVE + count.cast_signed() as i64 + index),
+        1.. => Some(u32::try_from(index - 1).ok().filter(|&r| r < FIRST_RELATIVE).unwrap_or(NOWHERE)),
+        _ => {
+            let r = u32::try_from(RELATIVE + count.cast_signed() as i64 + index);
+            Some(r.ok().filter(|r| (FIRST_RELATIVE..NOWHERE).contains(r)).unwrap_or(NOWHERE))
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Reads OBJ: chunks in parallel, then references resolved against what came before each chunk.
 
-use super::chunk::{Chunk, Mark, NO_REF, parse, resolve};
+use super::chunk::{Chunk, Mark, NO_REF, Ref, parse, resolve};
 use super::mtl;
 use crate::error::{Fault, Spot};
 use crate::folder::Folder;
@@ -117,23 +117,29 @@ fn absolute(
     count: Before,
     offset: impl Fn(usize, usize) -> usize + Sync,
 ) -> Result<Vec<u32>, Fault> {
-    let check = |c: usize| {
-        let (chunk, before) = (&chunks[c], &before[c]);
-        let limit = count.positions.min(u32::MAX as usize);
-        let mut corners = Vec::with_capacity(chunk.vertex_refs.len());
-        for (corner, &r) in chunk.vertex_refs.iter().enumerate() {
-            match resolve(r, before.positions) {
-                Some(i) if i < limit => corners.push(i as u32),
-                _ => {
-                    let reason = format!("a face names a vertex that is not among the file's {}", count.positions);
-                    return Err(Fault::text(offset(c, face_of_corner(chunk, corner)), reason));
-                }
-            }
-        }
-        Ok(corners)
-    };
-    let pieces: Vec<Result<Vec<u32>, Fault>> = (0..chunks.len()).into_par_iter().map(check).collect();
-    Ok(pieces.into_iter().collect::<Result<Vec<_>, _>>()?.concat())
+    let limit = count.positions.min(u32::MAX as usize);
+    let mut corners = vec![0; chunks.iter().map(|c| c.vertex_refs.len()).sum()];
+    let (mut rest, mut tasks) = (&mut corners[..], Vec::with_capacity(chunks.len()));
+    for (c, chunk) in chunks.iter().enumerate() {
+        let (part, behind) = std::mem::take(&mut rest).split_at_mut(chunk.vertex_refs.len());
+        tasks.push((c, part));
+        rest = behind;
+    }
+    let faults: Vec<Fault> = tasks
+        .into_par_iter()
+        .filter_map(|(c, part)| {
+            let refs = &chunks[c].vertex_refs;
+            let dangling = part.iter_mut().zip(refs).position(|(corner, &r)| {
+                let found = resolve(r, before[c].positions).filter(|&i| i < limit);
+                *corner = found.unwrap_or_default() as u32;
+                found.is_none()
+            })?;
+            let reason = format!("a face names a vertex that is not among the file's {}", count.positions);
+            Some(Fault::text(offset(c, face_of_corner(&chunks[c], dangling)), reason))
+        })
+        .collect();
+    // The first in the file.
+    faults.into_iter().next().map_or(Ok(corners), Err)
 }
 
 fn face_of_corner(chunk: &Chunk, corner: usize) -> usize {
@@ -155,7 +161,7 @@ fn face_of_corner(chunk: &Chunk, corner: usize) -> usize {
 fn attribute<T: Value>(
     chunks: &[Chunk],
     before: &[Before],
-    part: impl Fn(&Chunk) -> (&Vec<i64>, &Vec<T>) + Sync,
+    part: impl Fn(&Chunk) -> (&Vec<Ref>, &Vec<T>) + Sync,
     first: impl Fn(&Before) -> usize + Sync,
     notes: &mut Notes,
 ) -> Vec<T> {
@@ -166,7 +172,7 @@ fn attribute<T: Value>(
         .zip(before)
         .map(|(chunk, before)| {
             let refs = part(chunk).0;
-            let value = |&r: &i64| {
+            let value = |&r: &Ref| {
                 let found = resolve(r, first(before)).and_then(|i| values.get(i).copied());
                 if found.is_none() && r != NO_REF {
                     dangling.fetch_add(1, Ordering::Relaxed);

@@ -3,8 +3,9 @@
 use super::lines::Lines;
 use super::params::Params;
 use super::state::{Kind, cross};
-use super::table::{FEATURE, LOCKED, NONE, Table};
+use super::table::{FEATURE, NONE, Table};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// A polyline that turns by more than this cosine at a vertex has a corner there.
 const CORNER: f64 = 0.5;
@@ -66,15 +67,16 @@ pub(crate) fn find_features(
 
 /// Marks edges that turn by more than the angle, and counts them at each vertex.
 fn mark_sharp(table: &mut Table, points: &[DVec3], flattest: f64) -> Vec<u32> {
-    let normal = |h: u32| {
-        let f = 3 * (h / 3);
-        cross([f, f + 1, f + 2].map(|h| points[table.tail(h) as usize])).normalize_or_zero()
-    };
+    let normal =
+        |f: u32| cross([3 * f, 3 * f + 1, 3 * f + 2].map(|h| points[table.tail(h) as usize])).normalize_or_zero();
+    let normals: Vec<DVec3> = (0..table.halfedge_count() / 3).into_par_iter().with_min_len(4096).map(normal).collect();
     let sharp: Vec<u32> = (0..table.halfedge_count())
+        .into_par_iter()
+        .with_min_len(4096)
         .filter(|&h| {
-            let t = table.twin(h);
-            t != NONE && h < t && table.flags[h as usize] & LOCKED == 0 && {
-                let (m, n) = (normal(h), normal(t));
+            table.is_editable(h) && {
+                let t = table.twin(h);
+                let (m, n) = (normals[h as usize / 3], normals[t as usize / 3]);
                 m != DVec3::ZERO && n != DVec3::ZERO && m.dot(n) < flattest
             }
         })

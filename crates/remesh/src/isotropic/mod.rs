@@ -1,5 +1,6 @@
 //! Isotropic remeshing: rounds of split, collapse, flip, relax and project.
 
+mod agenda;
 mod features;
 mod grade;
 mod lines;
@@ -21,7 +22,7 @@ use mesh_core::{
 pub use params::{Frozen, Params, Projection, Remeshed, Sizing};
 use rayon::prelude::*;
 pub use refine::refine;
-use relax::{Rings, undo_folds, weights};
+use relax::{Rings, undo_folds};
 use seat::{Ground, Seat};
 pub(crate) use state::keeps_side;
 use state::{Kind, State};
@@ -97,7 +98,7 @@ fn relax_and_project<M: Adjacency + Positions + Sync, O: EditObserver>(
         .filter(|&v| state.kind(v) == Kind::Line && state.table.out[v as usize] != NONE)
         .collect();
     let arcs: Vec<(u32, f64)> = sliding.iter().map(|&v| (v, state.lines.arc(v))).collect();
-    let weights = weights(&state.table, &state.points, &state.sizes);
+    let weights = rings.weights(&state.table, &state.points, &state.sizes);
     rings.relax(&mut state.points, &weights, params.relaxations, params.lambda);
     for _ in 0..params.relaxations {
         for &v in &sliding {

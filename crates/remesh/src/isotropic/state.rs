@@ -1,7 +1,8 @@
 //! A surface while it is remeshed: topology, points, and what each vertex may do.
 
+use super::agenda::Agenda;
 use super::lines::Lines;
-use super::table::{FEATURE, LOCKED, NONE, Table};
+use super::table::{FEATURE, NONE, Table, next, prev};
 use glam::DVec3;
 use mesh_core::{EditObserver, VertexId};
 
@@ -50,44 +51,47 @@ impl<O> State<'_, O> {
 }
 
 impl<O: EditObserver> State<'_, O> {
-    #[inline]
-    fn is_candidate(&self, h: u32) -> bool {
-        let t = self.table.twin(h);
-        t != NONE && h < t && self.table.is_alive(h) && self.table.flags[h as usize] & LOCKED == 0
-    }
-
-    /// Squared length of an edge over the squared wanted length.
-    #[inline]
-    fn relative_length_squared(&self, h: u32) -> f64 {
-        let (a, b) = (self.table.tail(h), self.table.head(h));
-        let wanted = 0.5 * (self.sizes[a as usize] + self.sizes[b as usize]);
-        self.point(a).distance_squared(self.point(b)) / (wanted * wanted)
-    }
-
     fn may_edit(&self, h: u32) -> bool {
         self.observer.may_edit(VertexId(self.table.tail(h)), VertexId(self.table.head(h)))
+    }
+
+    /// The editable edges whose squared relative length is as wanted.
+    fn edges_where(&self, wanted: impl Fn(f64) -> bool + Sync) -> Agenda {
+        let (table, points, sizes) = (&self.table, &self.points, &self.sizes);
+        let is_worth = |h| table.is_editable(h) && wanted(relative_length_squared(table, points, sizes, h));
+        Agenda::of(table.halfedge_count(), is_worth)
     }
 
     /// Splits edges in the middle until none is too long. Returns how many splits there were.
     pub fn split_long(&mut self, max_faces: usize) -> usize {
         let mut splits = 0;
-        loop {
-            let before = splits;
-            let mut h = 0;
-            // Faces made on the way come later in the same sweep.
-            while h < self.table.halfedge_count() {
-                if self.is_candidate(h)
-                    && self.relative_length_squared(h) > SPLIT * SPLIT
+        let mut agenda = self.edges_where(|squared| squared > SPLIT * SPLIT);
+        while let Some(first) = agenda.take(0) {
+            let mut next = Some(first);
+            while let Some(h) = next {
+                if self.table.is_editable(h)
+                    && relative_length_squared(&self.table, &self.points, &self.sizes, h) > SPLIT * SPLIT
                     && self.is_longest(h)
                     && self.may_edit(h)
                     && self.table.live_faces() + 2 <= max_faces
+                    && let Some(middle) = self.split(h)
                 {
-                    splits += usize::from(self.split(h));
+                    splits += 1;
+                    self.look_around(middle, &mut agenda);
                 }
-                h += 1;
+                next = agenda.take(h + 1);
             }
-            if splits == before {
-                return splits;
+        }
+        splits
+    }
+
+    /// Whatever has a triangle at `v` may have changed.
+    fn look_around(&self, v: u32, agenda: &mut Agenda) {
+        for h in self.table.ring(v) {
+            // The other spokes are the last sides of these triangles.
+            let rim = next(h);
+            for h in [h, rim, prev(h), self.table.twin(rim)].into_iter().filter(|&h| h != NONE) {
+                agenda.add(h);
             }
         }
     }
@@ -95,17 +99,18 @@ impl<O: EditObserver> State<'_, O> {
     /// Whether no other edge of its two triangles is longer. Splitting such an edge makes none as long, so that splits
     /// come to an end, whatever edges may not be split.
     fn is_longest(&self, h: u32) -> bool {
-        let [a, b, c, d] = self.diamond(h).map(|v| self.point(v));
+        let [a, b, c, d] = self.table.diamond(h).map(|v| self.point(v));
         let length = a.distance_squared(b);
         [c, d].into_iter().all(|p| p.distance_squared(a) <= length && p.distance_squared(b) <= length)
     }
 
-    fn split(&mut self, h: u32) -> bool {
+    /// Splits an edge and returns the new vertex, unless its middle is one of its ends.
+    fn split(&mut self, h: u32) -> Option<u32> {
         let (a, b) = (self.table.tail(h), self.table.head(h));
         let feature = self.table.flags[h as usize] & FEATURE != 0;
         let middle = 0.5 * (self.point(a) + self.point(b));
         if middle == self.point(a) || middle == self.point(b) {
-            return false;
+            return None;
         }
         let (kind, place) = if feature {
             (Kind::Line, self.lines.insert(a, b, self.table.vertex_count(), middle))
@@ -119,16 +124,28 @@ impl<O: EditObserver> State<'_, O> {
         self.targets.push(6);
         self.seats.push(self.seats[a as usize]);
         self.observer.split(VertexId(a), VertexId(b), 0.5, VertexId(m));
-        true
+        Some(m)
     }
 
     /// Collapses edges that are too short where that makes none too long and turns no face. Returns how many.
     pub fn collapse_short(&mut self) -> usize {
         let mut collapses = 0;
-        for h in 0..self.table.halfedge_count() {
-            if self.is_candidate(h) && self.relative_length_squared(h) < COLLAPSE * COLLAPSE && self.may_edit(h) {
-                collapses += usize::from(self.collapse(h) || self.collapse(self.table.twin(h)));
+        let mut agenda = self.edges_where(|squared| squared < COLLAPSE * COLLAPSE);
+        let mut next = agenda.take(0);
+        while let Some(h) = next {
+            if self.table.is_editable(h)
+                && relative_length_squared(&self.table, &self.points, &self.sizes, h) < COLLAPSE * COLLAPSE
+                && self.may_edit(h)
+            {
+                let [a, b, ..] = self.table.diamond(h);
+                if self.collapse(h) || self.collapse(self.table.twin(h)) {
+                    collapses += 1;
+                    // One of them is no more and has no edges.
+                    self.look_around(a, &mut agenda);
+                    self.look_around(b, &mut agenda);
+                }
             }
+            next = agenda.take(h + 1);
         }
         collapses
     }
@@ -144,7 +161,7 @@ impl<O: EditObserver> State<'_, O> {
             _ => false,
         };
         // The edges that vanish beside it must not be kept ones.
-        let beside = [super::table::prev(h), super::table::next(t)].map(|h| self.table.flags[h as usize]);
+        let beside = [prev(h), next(t)].map(|h| self.table.flags[h as usize]);
         if !allowed || beside != [0, 0] || !self.table.collapses_cleanly(h) {
             return false;
         }
@@ -195,53 +212,30 @@ impl<O: EditObserver> State<'_, O> {
     /// Flips edges while that brings valences nearer to what is wanted. Returns how many flips there were.
     pub fn flip_to_valence(&mut self) -> usize {
         let mut flips = 0;
+        let (table, points, targets) = (&self.table, &self.points, &self.targets);
+        let mut agenda = Agenda::of(table.halfedge_count(), |h| flip_pays(table, points, targets, h));
         // Every flip lowers the sum of squared deviations, so that this ends by itself; later sweeps find little.
         for _ in 0..4 {
-            let before = flips;
-            for h in 0..self.table.halfedge_count() {
-                if self.is_candidate(h)
-                    && self.table.flags[h as usize] == 0
-                    && (self.valence_gain(h) > 0 || self.valence_gain(h) == 0 && self.opens(h))
-                    && self.may_edit(h)
-                    && self.flip_fits(h)
-                {
-                    let [a, b, c, d] = self.diamond(h).map(VertexId);
+            let mut next = agenda.take(0);
+            while let Some(h) = next {
+                if flip_pays(&self.table, &self.points, &self.targets, h) && self.may_edit(h) && self.flip_fits(h) {
+                    let diamond = self.table.diamond(h);
+                    let [a, b, c, d] = diamond.map(VertexId);
                     self.table.flip(h);
                     self.observer.flip(a, b, c, d);
                     flips += 1;
+                    for v in diamond {
+                        self.look_around(v, &mut agenda);
+                    }
                 }
-            }
-            if flips == before {
-                break;
+                next = agenda.take(h + 1);
             }
         }
         flips
     }
 
-    fn diamond(&self, h: u32) -> [u32; 4] {
-        let t = self.table.twin(h);
-        [self.table.tail(h), self.table.head(h), self.table.apex(h), self.table.apex(t)]
-    }
-
-    /// How much the sum of squared deviations from the wanted valences falls when `h` is flipped.
-    #[inline]
-    fn valence_gain(&self, h: u32) -> i32 {
-        let [a, b, c, d] = self.diamond(h);
-        let off = |v: u32| self.table.valence[v as usize].cast_signed() - i32::from(self.targets[v as usize]);
-        // (x − 1)² − x² = 1 − 2x at the ends, (x + 1)² − x² = 1 + 2x at the others.
-        2 * (off(a) + off(b) - off(c) - off(d)) - 4
-    }
-
-    /// Whether the flip makes the angles that face the edge clearly smaller.
-    fn opens(&self, h: u32) -> bool {
-        let [a, b, c, d] = self.diamond(h).map(|v| self.point(v));
-        let cosine =
-            |p: DVec3, q: DVec3, r: DVec3| (p - q).dot(r - q) / (p.distance_squared(q) * r.distance_squared(q)).sqrt();
-        cosine(a, c, b) + cosine(a, d, b) < cosine(c, a, d) + cosine(c, b, d) - 0.1
-    }
-
     fn flip_fits(&self, h: u32) -> bool {
-        let [a, b, c, d] = self.diamond(h);
+        let [a, b, c, d] = self.table.diamond(h);
         let fewest = |v: u32| self.table.valence[v as usize] > if self.table.is_boundary(v) { 2 } else { 3 };
         if c == d || !fewest(a) || !fewest(b) || self.table.between(c, d).is_some() {
             return false;
@@ -250,6 +244,40 @@ impl<O: EditObserver> State<'_, O> {
         let old = [[pa, pb, pc], [pb, pa, pd]];
         [[pc, pa, pd], [pd, pb, pc]].into_iter().all(|new| old.into_iter().all(|old| keeps_side(old, new)))
     }
+}
+
+/// Squared length of an edge over the squared wanted length.
+#[inline]
+fn relative_length_squared(table: &Table, points: &[DVec3], sizes: &[f64], h: u32) -> f64 {
+    let (a, b) = (table.tail(h) as usize, table.head(h) as usize);
+    let wanted = 0.5 * (sizes[a] + sizes[b]);
+    points[a].distance_squared(points[b]) / (wanted * wanted)
+}
+
+/// Whether a flip brings valences nearer to the wanted ones, or leaves them as they are and opens angles.
+#[inline]
+fn flip_pays(table: &Table, points: &[DVec3], targets: &[u8], h: u32) -> bool {
+    if !table.is_editable(h) || table.flags[h as usize] != 0 {
+        return false;
+    }
+    let diamond = table.diamond(h);
+    let gain = valence_gain(table, targets, diamond);
+    gain > 0 || gain == 0 && opens(diamond.map(|v| points[v as usize]))
+}
+
+/// How much the sum of squared deviations from the wanted valences falls when the first two corners lose an edge to the others.
+#[inline]
+fn valence_gain(table: &Table, targets: &[u8], [a, b, c, d]: [u32; 4]) -> i32 {
+    let off = |v: u32| table.valence[v as usize].cast_signed() - i32::from(targets[v as usize]);
+    // (x − 1)² − x² = 1 − 2x at the ends, (x + 1)² − x² = 1 + 2x at the others.
+    2 * (off(a) + off(b) - off(c) - off(d)) - 4
+}
+
+/// Whether a flip makes the angles that face the edge clearly smaller.
+fn opens([a, b, c, d]: [DVec3; 4]) -> bool {
+    let cosine =
+        |p: DVec3, q: DVec3, r: DVec3| (p - q).dot(r - q) / (p.distance_squared(q) * r.distance_squared(q)).sqrt();
+    cosine(a, c, b) + cosine(a, d, b) < cosine(c, a, d) + cosine(c, b, d) - 0.1
 }
 
 /// Twice the area vector.

@@ -84,6 +84,19 @@ impl Table {
         self.tails[h as usize] != NONE
     }
 
+    /// Whether an edge may be edited and this is the first of its halfedges.
+    #[inline]
+    pub fn is_editable(&self, h: u32) -> bool {
+        let t = self.twin(h);
+        t != NONE && h < t && self.is_alive(h) && self.flags[h as usize] & LOCKED == 0
+    }
+
+    /// The ends of an edge, then the corners across.
+    #[inline]
+    pub fn diamond(&self, h: u32) -> [u32; 4] {
+        [self.tail(h), self.head(h), self.apex(h), self.apex(self.twin(h))]
+    }
+
     #[inline]
     pub fn is_boundary(&self, v: u32) -> bool {
         let h = self.out[v as usize];
