@@ -264,7 +264,7 @@ mod tests {
         let mesh = Connected::new(shapes::cuboid(DVec3::splat(2.0))).unwrap();
         let found = feature_curves(&mesh, &Params::default());
         for (i, curve) in found.iter().enumerate() {
-            let [a, b] = [curve.halfedges[0]].map(|h| [mesh.tail(h), mesh.head(h)])[0].map(|v| mesh.position(v));
+            let [a, b] = mesh.ends(curve.halfedges[0]);
             assert_eq!(nearest_curve(&mesh, &found, 1.1 * 0.5 * (a + b)).map(|n| n.0), Some(i));
         }
         assert_eq!(nearest_curve(&mesh, &[], DVec3::ZERO), None);

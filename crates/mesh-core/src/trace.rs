@@ -277,14 +277,14 @@ fn pull_straight<M: Adjacency + Positions>(
     exits: &[HalfedgeId],
     limit: f64,
 ) -> Option<Vec<SurfacePoint>> {
-    let ends = |h: HalfedgeId| (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
+    let middle = |&h: &HalfedgeId| mesh.ends(h)[0].midpoint(mesh.ends(h)[1]);
     let mut places = vec![from.position(mesh)];
-    places.extend(exits.iter().map(|&h| ends(h).0.midpoint(ends(h).1)));
+    places.extend(exits.iter().map(middle));
     places.push(to.position(mesh));
     let mut parameters = vec![0.5; exits.len()];
     for _ in 0..4 * exits.len() + 8 {
         for (i, &h) in exits.iter().enumerate() {
-            let (a, b) = ends(h);
+            let [a, b] = mesh.ends(h);
             let along = b - a;
             let flat = |p: DVec3| {
                 let t = ((p - a).dot(along) / along.length_squared()).clamp(-1e3, 1e3);

@@ -5,7 +5,7 @@ use super::{Key, Part, Simplex};
 use crate::exact::{Expansion, PAIR_ERROR, Pair, cross2, volume, volume_pair};
 use crate::predicate::{facing, project};
 use glam::DVec3;
-use mesh_core::{Faces, HalfedgeId};
+use mesh_core::{HalfedgeId, Positions};
 use std::cmp::Ordering;
 
 /// A node within an edge.
@@ -55,10 +55,7 @@ pub(super) fn place(parts: &[Part; 2], key: &Key) -> (f64, DVec3) {
         _ => return (0.0, DVec3::ZERO),
     };
     let (t, _) = parameter(parts, which, edge, key[1 - which]);
-    let mesh = parts[which].mesh;
-    let h = HalfedgeId(edge);
-    let positions = &mesh.mesh().positions;
-    let (p, q) = (positions[mesh.tail(h).index()], positions[mesh.head(h).index()]);
+    let [p, q] = parts[which].mesh.ends(HalfedgeId(edge));
     let x = |i: usize| Pair::sum(q[i], -p[i]).mul(t).add(Pair { hi: p[i], lo: 0.0 }).hi;
     (t.hi, DVec3::new(x(0), x(1), x(2)))
 }
