@@ -64,7 +64,7 @@ fn fan(relief: &Relief, v: VertexId, length: f64) -> Fan {
     let mut total = 0.0;
     for h in base.ring(v) {
         wedges.push((h, total));
-        total += corner_angle(base.mesh().triangle(h.face()), h.corner());
+        total += corner_angle(base.triangle(h.face()), h.corner());
     }
     let Some(&(first, _)) = wedges.first() else { return out };
     if base.twin(first).is_none() || total <= 0.0 {
@@ -88,7 +88,7 @@ fn walk(relief: &Relief, h: HalfedgeId, angle: f64, length: f64, samples: &mut [
     let base = relief.base();
     let place = |v: VertexId| base.position(v);
     let (o, a, b) = (base.tail(h), base.head(h), base.head(h.next()));
-    let wedge = corner_angle(base.mesh().triangle(h.face()), h.corner());
+    let wedge = corner_angle(base.triangle(h.face()), h.corner());
     // The line is the x axis; every face is laid beside the one before.
     let turned = |v: VertexId, angle: f64| DVec2::from_angle(angle) * place(v).distance(place(o));
     let mut flat = [DVec2::ZERO, turned(a, -angle), turned(b, wedge - angle)];

@@ -2,7 +2,7 @@
 
 use crate::relief::{Detail, Relief};
 use glam::{DVec2, DVec3};
-use mesh_core::{Adjacency, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, triangle_normal};
+use mesh_core::{Adjacency, Connected, FaceId, Faces, Positions, TriMesh, VertexId, triangle_normal};
 use mesh_query::TriBvh;
 use param_conformal::map_free;
 use std::collections::HashSet;
@@ -67,7 +67,7 @@ impl Rectangle {
     /// mapped conformally where they are a disc, else projected.
     pub fn new(relief: &Relief, anchor: &Anchor, half: DVec2) -> Option<Self> {
         let base = relief.base();
-        let normal = triangle_normal(base.mesh().triangle(anchor.face));
+        let normal = triangle_normal(base.triangle(anchor.face));
         let x = (anchor.along - anchor.along.dot(normal) * normal).try_normalize()?;
         let y = normal.cross(x);
         let flat = |p: DVec3| DVec2::new((p - anchor.at).dot(x), (p - anchor.at).dot(y));
@@ -122,7 +122,7 @@ fn turned(d: &Detail, by: DVec2) -> Detail {
 /// Faces reached from `first` over faces that look its way and have a corner where `within` holds.
 fn around(base: &Connected<TriMesh>, first: FaceId, normal: DVec3, within: impl Fn(DVec3) -> bool) -> Vec<FaceId> {
     let fits = |f: FaceId| {
-        let p = base.mesh().triangle(f);
+        let p = base.triangle(f);
         p.iter().any(|&p| within(p)) && triangle_normal(p).dot(normal) > 0.2
     };
     let mut found = HashSet::from([first]);
@@ -130,7 +130,7 @@ fn around(base: &Connected<TriMesh>, first: FaceId, normal: DVec3, within: impl 
     let mut next = 0;
     while let Some(&f) = all.get(next) {
         next += 1;
-        for g in (0..3).filter_map(|k| base.twin(HalfedgeId::new(f, k))).map(HalfedgeId::face) {
+        for g in base.neighbours(f) {
             if !found.contains(&g) && fits(g) {
                 found.insert(g);
                 all.push(g);

@@ -5,7 +5,8 @@ use crate::operator::{Diffusion, Operator};
 use crate::patch::{Patch, patch};
 use glam::DVec3;
 use mesh_core::{
-    Adjacency, Connected, FaceId, FaceMap, Faces, Positions, TriMesh, VertexId, Watch, triangle_normal, vertex_normals,
+    Adjacency, Connected, FaceId, FaceMap, Faces, Positions, TriMesh, VertexId, Watch, centroid, triangle_normal,
+    vertex_normals,
 };
 use std::f64::consts::TAU;
 
@@ -224,9 +225,9 @@ impl Relief {
             let corners = self.base.corners(f).map(|v| surface[v.index()]);
             let own = mesh_core::area_vector(corners).length();
             area += own;
-            if triangle_normal(corners).dot(triangle_normal(self.base.mesh().triangle(f))) <= 0.0 {
+            if triangle_normal(corners).dot(triangle_normal(self.base.triangle(f))) <= 0.0 {
                 folded += own;
-                place = place.or(Some(corners.iter().sum::<DVec3>() / 3.0));
+                place = place.or(Some(centroid(corners)));
             }
         }
         place.map(|at| (folded / area, at, self.handles()))
@@ -288,7 +289,7 @@ impl Relief {
     pub(crate) fn longest_edge(&self) -> f64 {
         let inside = self.base.face_ids().filter(|f| self.inside[f.index()]);
         let sides = |p: [DVec3; 3]| [0, 1, 2].map(|k| p[k].distance(p[(k + 1) % 3]));
-        let mut lengths: Vec<f64> = inside.flat_map(|f| sides(self.base.mesh().triangle(f))).collect();
+        let mut lengths: Vec<f64> = inside.flat_map(|f| sides(self.base.triangle(f))).collect();
         lengths.sort_unstable_by(f64::total_cmp);
         lengths.get(lengths.len() * 99 / 100).copied().unwrap_or_default()
     }

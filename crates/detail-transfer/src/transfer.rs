@@ -215,7 +215,7 @@ fn finite_diagonal(mesh: &Connected<TriMesh>) -> f64 {
 /// The mean side of a region's faces.
 fn mean_edge(mesh: &Connected<TriMesh>, inside: &FaceMap<bool>) -> f64 {
     let faces = mesh.face_ids().filter(|&f| inside.get(f) == Some(&true));
-    let sides = faces.map(|f| mesh.mesh().triangle(f)).flat_map(|p| [0, 1, 2].map(|k| p[k].distance(p[(k + 1) % 3])));
+    let sides = faces.map(|f| mesh.triangle(f)).flat_map(|p| [0, 1, 2].map(|k| p[k].distance(p[(k + 1) % 3])));
     let (sum, count) = sides.fold((0.0, 0usize), |(s, n), l| (s + l, n + 1));
     sum / count.max(1) as f64
 }

@@ -117,8 +117,8 @@ fn noise_goes_on_without_a_seam() {
 
 /// Root mean square dihedral angle over the edges of the region's boundary.
 fn bend_at_weld(mesh: &Connected<TriMesh>, inside: &FaceMap<bool>) -> f64 {
-    use mesh_core::{Adjacency, HalfedgeId, dihedral_angle};
-    let halfedges = mesh.face_ids().filter(|&f| inside[f]).flat_map(|f| (0..3).map(move |k| HalfedgeId::new(f, k)));
+    use mesh_core::{Adjacency, FaceId, dihedral_angle};
+    let halfedges = mesh.face_ids().filter(|&f| inside[f]).flat_map(FaceId::halfedges);
     let weld = halfedges.filter(|&h| mesh.twin(h).is_some_and(|t| !inside[t.face()]));
     let angles: Vec<f64> = weld.filter_map(|h| dihedral_angle(mesh, h)).collect();
     (angles.iter().map(|a| a * a).sum::<f64>() / angles.len() as f64).sqrt()

@@ -2,7 +2,7 @@
 
 use detail_transfer::{BaseParams, Error, Reconstruction, Relief, roughness};
 use glam::{DQuat, DVec3};
-use mesh_core::{Connected, FaceMap, Faces, TriMesh, Watch, bounds, shapes};
+use mesh_core::{Connected, FaceMap, Faces, TriMesh, Watch, bounds, centroid, shapes};
 
 fn rough_ball() -> Connected<TriMesh> {
     let mut ball = shapes::icosphere(1.0, 4);
@@ -14,7 +14,7 @@ fn rough_ball() -> Connected<TriMesh> {
 }
 
 fn cap(mesh: &Connected<TriMesh>, height: f64) -> FaceMap<bool> {
-    let middle = |f| mesh.mesh().triangle(f).iter().sum::<DVec3>() / 3.0;
+    let middle = |f| centroid(mesh.mesh().triangle(f));
     mesh.face_ids().map(|f| middle(f).normalize().z > height).collect::<Vec<_>>().into()
 }
 

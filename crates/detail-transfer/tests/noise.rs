@@ -2,7 +2,7 @@
 
 use detail_transfer::{Exemplar, Params, Roughness, roughness, transfer};
 use glam::DVec3;
-use mesh_core::{Adjacency, Connected, FaceMap, Faces, HalfedgeId, TriMesh, Watch, dihedral_angle, shapes};
+use mesh_core::{Adjacency, Connected, FaceId, FaceMap, Faces, TriMesh, Watch, centroid, dihedral_angle, shapes};
 use std::f64::consts::TAU;
 
 /// Evenly distributed in [0, 1), the same ones for the same seed.
@@ -67,11 +67,8 @@ struct Shares {
 
 /// Raises `smooth` by `heights` but for the faces `inside`, fills those again, and compares with the rest of the surface.
 fn refilled(smooth: &TriMesh, heights: &[f64], round: bool, inside: impl Fn(DVec3) -> bool, wavelength: f64) -> Shares {
-    let hole: Vec<bool> = smooth
-        .faces
-        .iter()
-        .map(|f| inside(f.iter().map(|v| smooth.positions[v.index()]).sum::<DVec3>() / 3.0))
-        .collect();
+    let hole: Vec<bool> =
+        smooth.faces.iter().map(|f| inside(centroid(f.map(|v| smooth.positions[v.index()])))).collect();
     let mut kept = vec![false; heights.len()];
     smooth
         .faces
@@ -105,7 +102,7 @@ fn refilled(smooth: &TriMesh, heights: &[f64], round: bool, inside: impl Fn(DVec
 
 /// Root mean square dihedral angle over the edges of the region's boundary.
 fn bend_at_weld(mesh: &Connected<TriMesh>, inside: &FaceMap<bool>) -> f64 {
-    let halfedges = mesh.face_ids().filter(|&f| inside[f]).flat_map(|f| (0..3).map(move |k| HalfedgeId::new(f, k)));
+    let halfedges = mesh.face_ids().filter(|&f| inside[f]).flat_map(FaceId::halfedges);
     let weld = halfedges.filter(|&h| mesh.twin(h).is_some_and(|t| !inside[t.face()]));
     let angles: Vec<f64> = weld.filter_map(|h| dihedral_angle(mesh, h)).collect();
     (angles.iter().map(|a| a * a).sum::<f64>() / angles.len() as f64).sqrt()

@@ -2,7 +2,7 @@
 
 use detail_transfer::{BaseParams, Detail, Exemplar, FanLength, Params, Relief, Search, fill_unstructured, transfer};
 use glam::DVec3;
-use mesh_core::{Connected, FaceMap, Faces, TriMesh, Watch, shapes};
+use mesh_core::{Connected, FaceMap, Faces, TriMesh, Watch, centroid, shapes};
 use std::time::Instant;
 
 /// Band-limited noise: waves of one length in all directions.
@@ -34,7 +34,7 @@ pub fn noisy(n: u32, height: f64, wavelength: f64) -> Connected<TriMesh> {
 #[ignore = "a measurement: run with --ignored --nocapture"]
 fn time_ten_thousand() {
     let mesh = noisy(160, 0.01, 0.1);
-    let middle = |f| mesh.mesh().triangle(f).iter().sum::<DVec3>() / 3.0;
+    let middle = |f| centroid(mesh.mesh().triangle(f));
     let target: FaceMap<bool> = mesh.face_ids().map(|f| middle(f).x < -0.2).collect::<Vec<_>>().into();
     let source: FaceMap<bool> = mesh.face_ids().map(|f| middle(f).x > 0.22).collect::<Vec<_>>().into();
     let start = Instant::now();

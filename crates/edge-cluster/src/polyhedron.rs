@@ -331,17 +331,16 @@ impl Polyhedron {
 fn flat_groups(mesh: &Connected<&TriMesh>, polygon_of: Option<&[u32]>, merge: f64) -> Vec<u32> {
     let polygon_of = polygon_of.filter(|p| p.len() == mesh.face_count());
     let mut parent: Vec<u32> = (0..mesh.face_count() as u32).collect();
-    let normals: Vec<DVec3> =
-        mesh.face_ids().map(|f| area_vector(mesh.mesh().triangle(f)).normalize_or_zero()).collect();
+    let normals: Vec<DVec3> = mesh.face_ids().map(|f| area_vector(mesh.triangle(f)).normalize_or_zero()).collect();
     let sine = merge.to_radians().sin();
-    for h in (0..3 * mesh.face_count()).map(HalfedgeId::from) {
+    for h in mesh.halfedge_ids() {
         let Some(t) = mesh.twin(h).filter(|&t| h < t) else { continue };
         let (f, g) = (h.face().index(), t.face().index());
         let (a, b) = (normals[f], normals[g]);
         let flat = a.dot(b) > 0.0 && a.cross(b).length() <= sine;
         // A triangle without area lies in whatever plane its longest side does.
         let needle = |t: usize, h: HalfedgeId| {
-            let length = |h: HalfedgeId| mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h)));
+            let length = |h: HalfedgeId| mesh.edge_length(h);
             normals[t] == DVec3::ZERO && length(h) >= length(h.next()).max(length(h.prev()))
         };
         if flat || polygon_of.is_some_and(|p| p[f] == p[g]) || needle(f, h) || needle(g, t) {

@@ -5,7 +5,7 @@ use edge_cluster::{
     blend, contact_slopes, cover, solids,
 };
 use glam::{DVec2, DVec3};
-use mesh_core::{Connected, Faces, HalfedgeId, Watch, dihedral_angle, validate};
+use mesh_core::{Connected, Faces, Watch, dihedral_angle, validate};
 
 fn specs(clusters: &[Vec<u32>]) -> Vec<Spec> {
     clusters.iter().map(|v| Spec { vertices: v.clone(), ..Spec::default() }).collect()
@@ -85,7 +85,7 @@ fn convex_concave_solids_are_covered_and_watertight() {
         assert!(blended.woven.places.iter().all(|p| !matches!(p, Place::Vertex(_) | Place::Edge(_))), "{seed}");
         // No sheet folds back over its neighbour, as blends beside reflex corners of faces are prone to.
         let mesh = Connected::new(blended.woven.mesh).unwrap();
-        let turns = (0..3 * mesh.face_count()).filter_map(|h| dihedral_angle(&mesh, HalfedgeId::from(h)));
+        let turns = mesh.halfedge_ids().filter_map(|h| dihedral_angle(&mesh, h));
         let worst = turns.map(f64::abs).fold(0.0, f64::max);
         assert!(worst < 2.2, "{seed}: {worst}");
     }

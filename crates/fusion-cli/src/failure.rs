@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// A failed command: one exit code and one sentence.
@@ -51,6 +52,11 @@ impl Failure {
         }
     }
 
+    /// The same with the files that the user knows in place of the parts that the pipeline counts.
+    pub fn of_files(error: &fusion::Error, files: &[PathBuf]) -> Self {
+        Self::of(error, with_files(&error.to_string(), files))
+    }
+
     /// Says the sentence on standard error and gives the exit code.
     pub fn report(&self) -> ExitCode {
         let mut stderr = std::io::stderr();
@@ -63,4 +69,15 @@ impl Failure {
         };
         ExitCode::from(self.code)
     }
+}
+
+/// A sentence of the library, which counts parts, with the files in their place.
+pub fn with_files(text: &str, files: &[PathBuf]) -> String {
+    let mut text = text.to_string();
+    for (i, path) in files.iter().enumerate() {
+        for end in [" ", ",", ":"] {
+            text = text.replace(&format!("part {i}{end}"), &format!("{}{end}", path.display()));
+        }
+    }
+    text
 }

@@ -2,15 +2,17 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `args.rs`, `rolling.rs`, `clustering.rs`, `cutting.rs`, `detailing.rs`, `smoothing.rs`, `length.rs`, `place.rs` | what can be typed |
+//! | `args.rs`, `rolling.rs`, `clustering.rs`, `composing.rs`, `cutting.rs`, `detailing.rs`, `smoothing.rs`, `length.rs`, `place.rs` | what can be typed |
 //! | `failure.rs` | exit codes |
 //! | `session.rs` | one command: reading, progress, messages, writing |
+//! | `text_file.rs` | files of curves, clusters, profiles and the like |
 //! | `output.rs` | files that appear all at once or not at all |
 //! | `progress.rs` | bars and Ctrl-C |
 //! | `verbs/` | one file per verb |
 
 mod args;
 mod clustering;
+mod composing;
 mod cutting;
 mod detailing;
 mod failure;
@@ -21,6 +23,7 @@ mod progress;
 mod rolling;
 mod session;
 mod smoothing;
+mod text_file;
 mod verbs;
 
 use args::{Cli, Verb, with_bare_weld};

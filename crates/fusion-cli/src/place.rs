@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::length::{Length, point};
+use crate::text_file::read_text;
 use fusion::Region;
 use fusion::mesh_core::FaceId;
 use glam::DVec3;
@@ -44,13 +45,11 @@ impl Place {
             Self::Near(center, radius) => Region::Near { center: *center, radius: radius.resolve(diagonal) },
             Self::Group(name) => Region::Group(name.clone()),
             Self::Origin(stage) => Region::Origin(stage.clone()),
-            Self::File(path) => {
-                let unreadable = |e: &dyn std::fmt::Display| Failure::unreadable(format!("{}: {e}", path.display()));
-                let text = std::fs::read_to_string(path).map_err(|e| unreadable(&e))?;
+            Self::File(path) => Region::Faces(read_text(path, |text| {
                 let words = text.split(|c: char| c.is_whitespace() || ",[]".contains(c)).filter(|w| !w.is_empty());
-                let id = |w: &str| w.parse().map(FaceId).map_err(|_| unreadable(&format!("{w:?} is no face id")));
-                Region::Faces(words.map(id).collect::<Result<_, _>>()?)
-            }
+                let id = |w: &str| w.parse().map(FaceId).map_err(|_| format!("{w:?} is no face id"));
+                words.map(id).collect::<Result<_, _>>()
+            })?),
         })
     }
 }

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::length::{Length, Radius, point, radius_at};
 use crate::output::{self, Outputs};
+use crate::text_file::read_text;
 use clap::{Args, ValueEnum};
 use fusion::blend::{self, Sketch};
 use fusion::{Profile, Solver, profile_from_text};
@@ -144,11 +145,7 @@ impl Curve {
     fn profile(&self) -> Result<Profile, Failure> {
         match self {
             Self::Known(profile) => Ok(profile.clone()),
-            Self::File(path) => {
-                let fault = |e: &dyn std::fmt::Display| Failure::unreadable(format!("{}: {e}", path.display()));
-                let text = std::fs::read_to_string(path).map_err(|e| fault(&e))?;
-                profile_from_text(&text).map_err(|e| fault(&e))
-            }
+            Self::File(path) => read_text(path, profile_from_text),
         }
     }
 }
@@ -205,17 +202,8 @@ fn profile_at(text: &str) -> Result<(DVec3, Curve), String> {
 }
 
 fn profile(text: &str) -> Result<Curve, String> {
-    let conic = |w: &str| w.parse().ok().filter(|w: &f64| w.is_finite() && *w >= 0.0).map(Profile::Conic);
-    let known = match text {
-        "arc" => Some(Profile::Arc),
-        "g2" => Some(Profile::G2),
-        "chamfer" => Some(Profile::Chamfer),
-        "sharp" => Some(Profile::Sharp),
-        "hermite" => Some(Profile::Hermite),
-        _ => text.strip_prefix("conic=").and_then(conic),
-    };
     let is_file = Path::new(text).extension().is_some() && !text.starts_with("conic=");
-    match known {
+    match Profile::named(text) {
         Some(profile) => Ok(Curve::Known(profile)),
         None if is_file => Ok(Curve::File(text.into())),
         None => Err("a profile is arc, g2, chamfer, sharp, hermite, conic=W with W ≥ 0, such as conic=2, or a file with an extension, such as curve.json".into()),

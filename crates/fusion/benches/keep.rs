@@ -32,7 +32,7 @@ fn teapot(near: f64, far: f64) -> (Mesh, BlendCurve) {
     };
     let picks = [0, 1, 2].map(|k| nearest(seam[k * seam.len() / 3]));
     let cost = |h: HalfedgeId| {
-        let (a, b) = (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
+        let [a, b] = mesh.ends(h);
         a.distance(b) * (1e-3 + away(a) + away(a.midpoint(b)))
     };
     let paths = (0..3).map(|k| shortest_path(&mesh, picks[k], picks[(k + 1) % 3], cost).expect("a path"));

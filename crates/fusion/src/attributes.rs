@@ -128,7 +128,7 @@ fn barycentric(p: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mesh_core::{VertexId, shapes};
+    use mesh_core::{VertexId, centroid, shapes};
 
     /// A box whose texture coordinates are a linear function of place, so that interpolation has one right answer.
     fn painted() -> Model {
@@ -156,7 +156,7 @@ mod tests {
         let mut mesh = model.mesh.clone();
         let mut origins = Origins::identity(0, 8, 12);
         // Face 0 gets a point in its middle; the last of its three pieces is made new.
-        let middle = mesh.triangle(FaceId(0)).iter().sum::<DVec3>() / 3.0;
+        let middle = centroid(mesh.triangle(FaceId(0)));
         mesh.positions.push(middle);
         origins.vertices.push(VertexOrigin::Face { part: 0, face: FaceId(0), barycentric: [1.0 / 3.0; 3] });
         let [a, b, c] = mesh.faces[0];

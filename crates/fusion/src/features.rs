@@ -79,7 +79,7 @@ pub fn nearest_curve<M: Adjacency + Positions>(
     point: DVec3,
 ) -> Option<(usize, f64)> {
     let distance = |h: HalfedgeId| {
-        let (a, b) = (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
+        let [a, b] = mesh.ends(h);
         let t = (point - a).dot(b - a) / (b - a).length_squared();
         // A zero-length edge gives NaN; its start serves.
         let t = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) };
@@ -185,7 +185,7 @@ impl Edges {
     }
 
     fn curve<M: Adjacency + Positions>(&self, mesh: &M, halfedges: Vec<HalfedgeId>) -> FeatureCurve {
-        let length = |h: &HalfedgeId| mesh.position(mesh.tail(*h)).distance(mesh.position(mesh.head(*h)));
+        let length = |h: &HalfedgeId| mesh.edge_length(*h);
         let turns = || halfedges.iter().map(|h| self.turn[h.index()]);
         FeatureCurve {
             closed: halfedges.len() > 2
@@ -202,7 +202,7 @@ impl Edges {
 /// edges of a scan do. Where rounding could decide, no.
 fn is_flatter<M: Faces + Positions>(mesh: &M, sides: [HalfedgeId; 2], cosine: f64) -> bool {
     let [m, n] = sides.map(|h| {
-        let [a, b, c] = mesh.corners(h.face()).map(|v| mesh.position(v));
+        let [a, b, c] = mesh.triangle(h.face());
         (b - a).cross(c - a)
     });
     let (product, squares) = (m.dot(n), m.length_squared() * n.length_squared());
@@ -253,7 +253,7 @@ mod tests {
             let vertices = curve.vertices(&mesh);
             assert_eq!(vertices.len(), curve.halfedges.len() + usize::from(!curve.closed));
         }
-        let sharp = (0..3 * mesh.face_count()).map(HalfedgeId::from).filter(|&h| {
+        let sharp = mesh.halfedge_ids().filter(|&h| {
             mesh.edge(h).0 == h.0 && dihedral_angle(&mesh, h).is_some_and(|a| a.abs() >= 20f64.to_radians())
         });
         assert_eq!(seen.len(), sharp.count());
@@ -264,7 +264,7 @@ mod tests {
         let mesh = Connected::new(shapes::cuboid(DVec3::splat(2.0))).unwrap();
         let found = feature_curves(&mesh, &Params::default());
         for (i, curve) in found.iter().enumerate() {
-            let [a, b] = [curve.halfedges[0]].map(|h| [mesh.tail(h), mesh.head(h)])[0].map(|v| mesh.position(v));
+            let [a, b] = mesh.ends(curve.halfedges[0]);
             assert_eq!(nearest_curve(&mesh, &found, 1.1 * 0.5 * (a + b)).map(|n| n.0), Some(i));
         }
         assert_eq!(nearest_curve(&mesh, &[], DVec3::ZERO), None);

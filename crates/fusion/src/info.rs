@@ -110,7 +110,7 @@ fn self_intersections(mesh: &TriMesh, sound: bool, watch: &Watch) -> Result<usiz
 }
 
 fn loops(mesh: &Connected<&TriMesh>) -> Vec<Loop> {
-    let length = |h: HalfedgeId| mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h)));
+    let length = |h: HalfedgeId| mesh.edge_length(h);
     let describe = |walk: Vec<HalfedgeId>| Loop {
         edges: walk.len(),
         length: walk.iter().map(|&h| length(h)).sum(),

@@ -82,14 +82,14 @@ fn trace_one(
         return Err(Error::NoCurve("a picked curve needs points at two vertices at least".into(), start));
     }
     let cost = |h: HalfedgeId| {
-        let length = mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h)));
+        let length = mesh.edge_length(h);
         let turn = dihedral_angle(mesh, h).map_or(f64::NAN, |a| a.to_degrees().abs());
         length * (1.0 - turn / FULL_TURN).max(0.0).powi(2).max(SHARP)
     };
     let (mut halfedges, mut used) = (Vec::new(), HashSet::new());
     for pair in vertices.windows(2) {
         let at = mesh.position(pair[0]);
-        let edge = mesh.ring(pair[0]).find(|&h| mesh.head(h) == pair[1]);
+        let edge = mesh.halfedge(pair[0], pair[1]);
         let way = edge.map(|h| vec![h]).or_else(|| shortest_path(mesh, pair[0], pair[1], cost));
         let way = way.ok_or_else(|| {
             let to = mesh.position(pair[1]);

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use glam::DVec3;
-use mesh_core::{Adjacency, Connected, FaceId, FaceMap, Faces, HalfedgeId, TriMesh};
+use mesh_core::{Adjacency, Connected, FaceId, FaceMap, Faces, TriMesh};
 use mesh_io::Model;
 use mesh_query::TriBvh;
 
@@ -70,7 +70,7 @@ fn flood(mesh: &Connected<TriMesh>, center: DVec3, radius: f64, inside: &mut Fac
             continue;
         }
         inside[f] = true;
-        stack.extend((0..3).filter_map(|k| mesh.twin(HalfedgeId::new(f, k))).map(HalfedgeId::face));
+        stack.extend(mesh.neighbours(f));
     }
 }
 

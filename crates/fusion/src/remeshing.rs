@@ -6,6 +6,7 @@ use crate::{Counts, Error, Region, Report, carry, extent};
 use glam::DVec3;
 use mesh_core::{
     Adjacency, Bounds, Connected, FaceId, FaceMap, FaceOrigin, Faces, Origins, Stage, TriMesh, VertexOrigin, Watch,
+    centroid,
 };
 use mesh_io::{Format, Model};
 use mesh_query::{TriBvh, closest_point_on_triangle};
@@ -188,7 +189,7 @@ fn crossings(even: &Remeshed, watch: &Watch) -> Result<Vec<DVec3>, Error> {
     let faces = even.mesh.face_ids().zip(even.origins.faces.as_slice());
     let changed: Vec<FaceId> = faces.filter(|(_, o)| !matches!(o, FaceOrigin::Input { .. })).map(|(f, _)| f).collect();
     match self_intersections_among(&even.mesh, &changed, watch) {
-        Ok(pairs) => Ok(pairs.iter().flatten().map(|&f| even.mesh.triangle(f).iter().sum::<DVec3>() / 3.0).collect()),
+        Ok(pairs) => Ok(pairs.iter().flatten().map(|&f| centroid(even.mesh.triangle(f))).collect()),
         Err(tri_intersect::Error::Cancelled(c)) => Err(c.into()),
         Err(source) => Err(Error::Boolean { step: None, source }),
     }
@@ -245,7 +246,7 @@ fn measure(mesh: &TriMesh, report: &mut Report) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mesh_core::{VertexId, shapes};
+    use mesh_core::shapes;
 
     fn params(edge_length: f64) -> Params {
         Params::new(edge_length, Format::Obj)
@@ -265,10 +266,9 @@ mod tests {
     #[test]
     fn sheets_nearer_than_the_chords_are_deep_are_left_alone() {
         let mut mesh = shapes::icosphere(1.0, 4);
-        let inner = shapes::icosphere(0.97, 4);
-        let first = mesh.positions.len() as u32;
-        mesh.positions.extend(&inner.positions);
-        mesh.faces.extend(inner.faces.iter().map(|&[a, b, c]| [a, c, b].map(|v| VertexId(v.0 + first))));
+        let mut inner = shapes::icosphere(0.97, 4);
+        inner.faces.iter_mut().for_each(|c| c.swap(1, 2));
+        mesh.append(&inner);
         let outcome = remesh(&Model::from(mesh), &params(0.6), &Watch::default()).unwrap();
         assert_eq!(outcome.report.validity.self_intersections, Some(0));
     }

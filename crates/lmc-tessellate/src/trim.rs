@@ -2,8 +2,7 @@
 
 use crate::error::Error;
 use crate::rim::{Near, REACH, Rims};
-use glam::DVec3;
-use mesh_core::{TriMesh, VertexId};
+use mesh_core::{TriMesh, VertexId, centroid};
 use rayon::prelude::*;
 
 /// The zero set around the rims, told apart.
@@ -32,7 +31,7 @@ pub(crate) fn trim(mesh: &TriMesh, rims: &Rims, width: f64, cell: f64) -> Result
         };
         if let Some(n) = face.iter().find_map(behind).filter(|n| face.iter().any(|v| beyond(n, v))) {
             let rim = rims.samples[n.sample as usize].rim as usize;
-            return Err(Error::Leak { rim, at: centroid(mesh, face) });
+            return Err(Error::Leak { rim, at: centroid(face.map(|v| mesh.positions[v.index()])) });
         }
     }
     let all = |wanted: &[bool], f: &[VertexId; 3]| f.iter().all(|v| wanted[v.index()]);
@@ -67,10 +66,6 @@ pub(crate) fn trim(mesh: &TriMesh, rims: &Rims, width: f64, cell: f64) -> Result
             return Ok(Trimmed { kept, near, borders });
         }
     }
-}
-
-fn centroid(mesh: &TriMesh, face: &[VertexId; 3]) -> DVec3 {
-    face.iter().map(|v| mesh.positions[v.index()]).sum::<DVec3>() / 3.0
 }
 
 /// Drops components of a few faces; whether there were any.

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 use lmc_tessellate::{Error, Params, Rim, Transition, suggested_cell, tessellate};
-use mesh_core::{Connected, Faces, TriMesh, VertexId, Watch, boundary_loops, shapes, topology, volume};
+use mesh_core::{Connected, Faces, TriMesh, VertexId, Watch, boundary_loops, centroid, shapes, topology, volume};
 
 /// The faces whose centroid passes.
 fn part(mesh: &TriMesh, keep: impl Fn(DVec3) -> bool) -> Connected<TriMesh> {
-    let centroid = |f: &[VertexId; 3]| f.iter().map(|v| mesh.positions[v.index()]).sum::<DVec3>() / 3.0;
-    let faces = mesh.faces.iter().filter(|f| keep(centroid(f))).copied().collect();
+    let middle = |f: &[VertexId; 3]| centroid(f.map(|v| mesh.positions[v.index()]));
+    let faces = mesh.faces.iter().filter(|f| keep(middle(f))).copied().collect();
     let (whole, _) = mesh_core::split(&TriMesh { positions: mesh.positions.clone(), faces });
     Connected::new(whole).unwrap()
 }
@@ -86,9 +86,7 @@ fn bands_of_any_width_are_closed() {
                 let low = shapes::posed(cap(64, 0.0), glam::DQuat::from_rotation_x(std::f64::consts::PI), DVec3::ZERO);
                 let high = shapes::posed(cap(steps, gap + tilt), glam::DQuat::from_rotation_y(tilt), DVec3::ZERO);
                 let mut both = low;
-                let shift = both.positions.len() as u32;
-                both.positions.extend(high.positions);
-                both.faces.extend(high.faces.iter().map(|f| f.map(|v| VertexId(v.0 + shift))));
+                both.append(&high);
                 let (mesh, _) =
                     rejoin(&both, |_| true, ball, None).unwrap_or_else(|e| panic!("{cells} {tilt} {steps}: {e}"));
                 assert_whole(&mesh, 0);

@@ -205,7 +205,7 @@ mod tests {
             prop_assert!(damage > 0 || out > 1 || carry(&mesh, &parts, &origins).is_some());
             match (anew, carried) {
                 (Ok(anew), Ok(carried)) => {
-                    for h in (0..3 * mesh.face_count()).map(HalfedgeId::from) {
+                    for h in mesh.halfedge_ids() {
                         prop_assert_eq!(anew.twin(h), carried.twin(h));
                     }
                     for v in mesh.vertex_ids() {

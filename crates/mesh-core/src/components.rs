@@ -87,17 +87,14 @@ fn root(parents: &mut [u32], mut v: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{TriMesh, VertexId, shapes};
+    use crate::{TriMesh, shapes};
     use glam::DVec3;
 
     #[test]
     fn interleaved_boxes_are_told_apart() {
         let mut mesh = TriMesh::default();
         for i in 0..3 {
-            let offset = mesh.positions.len() as u32;
-            let one = shapes::cuboid(DVec3::splat(1.0 + f64::from(i)));
-            mesh.positions.extend(one.positions);
-            mesh.faces.extend(one.faces.iter().map(|c| c.map(|v| VertexId(v.0 + offset))));
+            mesh.append(&shapes::cuboid(DVec3::splat(1.0 + f64::from(i))));
         }
         // Faces dealt out in turn: 0, 12, 24, 1, 13, …
         mesh.faces = (0..36).map(|i| mesh.faces[i % 3 * 12 + i / 3]).collect();

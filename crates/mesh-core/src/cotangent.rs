@@ -9,12 +9,8 @@ use rayon::prelude::*;
 /// The cotangent of the angle at each corner; 0 at all corners of a triangle without area. O(n), parallel.
 pub fn cotangents<M: Faces + Positions + Sync>(mesh: &M) -> CornerMap<f64> {
     let faces = (0..mesh.face_count() as u32).into_par_iter();
-    let values: Vec<[f64; 3]> = faces.map(|f| triangle_cotangents(points(mesh, FaceId(f)))).collect();
+    let values: Vec<[f64; 3]> = faces.map(|f| triangle_cotangents(mesh.triangle(FaceId(f)))).collect();
     values.into_flattened().into()
-}
-
-fn points<M: Faces + Positions>(mesh: &M, f: FaceId) -> [DVec3; 3] {
-    mesh.corners(f).map(|v| mesh.position(v))
 }
 
 fn triangle_cotangents(p: [DVec3; 3]) -> [f64; 3] {
@@ -34,7 +30,7 @@ pub fn cotangent_weight(mesh: &impl Adjacency, cotangents: &CornerMap<f64>, h: H
 /// The share of the surface that belongs to each vertex: Voronoi areas, cut at the middle of obtuse triangles so that
 /// they add up to the whole area (\[MeyerDesbrunSchroderBarr2003\]). Square model units. O(n), parallel.
 pub fn mixed_areas<M: Adjacency + Positions + Sync>(mesh: &M) -> VertexMap<f64> {
-    let area = |v| mesh.ring(VertexId(v)).map(|h| corner_area(turned(points(mesh, h.face()), h.corner()))).sum();
+    let area = |v| mesh.ring(VertexId(v)).map(|h| corner_area(turned(mesh.triangle(h.face()), h.corner()))).sum();
     (0..mesh.vertex_count() as u32).into_par_iter().map(area).collect::<Vec<f64>>().into()
 }
 
@@ -61,7 +57,7 @@ pub fn mean_curvature_vectors<M: Adjacency + Positions + Sync>(mesh: &M) -> Vert
         let on_boundary = mesh.outgoing(v).is_none_or(|h| mesh.twin(h).is_none());
         let (mut gradient, mut area) = (DVec3::ZERO, 0.0);
         for h in mesh.ring(v).filter(|_| !on_boundary) {
-            let p = turned(points(mesh, h.face()), h.corner());
+            let p = turned(mesh.triangle(h.face()), h.corner());
             gradient += area_gradient(p);
             area += corner_area(p);
         }

@@ -361,7 +361,7 @@ mod tests {
         // A wall along x = 0 from the lower border up to y = 0.25: around its tip is the only way.
         let plane = Connected::new(shapes::grid(1.0, 1.0, 40, 40)).unwrap();
         let on_wall = |v: VertexId| plane.position(v).x.abs() < 1e-9 && plane.position(v).y < 0.25 + 1e-9;
-        let wall = (0..3 * plane.face_count() as u32).map(HalfedgeId);
+        let wall = plane.halfedge_ids();
         let wall = wall.filter(|&h| on_wall(plane.tail(h)) && on_wall(plane.head(h)) && plane.edge(h).0 == h.0);
         let params = FloodParams { barriers: wall.map(|h| plane.edge(h)).collect(), ..FloodParams::default() };
         assert_eq!(params.barriers.len(), 30);
@@ -388,8 +388,8 @@ mod tests {
     fn one_side_of_a_curve_is_flooded_alone() {
         let tube = Connected::new(shapes::open_cylinder(1.0, 4.0, 64, 40)).unwrap();
         let waist = |v: VertexId| tube.position(v).z.abs() < 1e-9;
-        let ring: Vec<_> = (0..3 * tube.face_count() as u32)
-            .map(HalfedgeId)
+        let ring: Vec<_> = tube
+            .halfedge_ids()
             .filter(|&h| waist(tube.tail(h)) && waist(tube.head(h)))
             .filter(|&h| tube.position(tube.tail(h.prev())).z > 0.0)
             .collect();

@@ -56,6 +56,15 @@ id!(
     EdgeId
 );
 
+impl FaceId {
+    /// Its three halfedges, from the one that leaves its first corner.
+    #[inline]
+    #[must_use]
+    pub const fn halfedges(self) -> [HalfedgeId; 3] {
+        [HalfedgeId::new(self, 0), HalfedgeId::new(self, 1), HalfedgeId::new(self, 2)]
+    }
+}
+
 impl HalfedgeId {
     /// The halfedge of `face` that leaves its `corner` (0, 1 or 2).
     #[inline]

@@ -71,9 +71,9 @@ pub use geodesic::{Flood, FloodParams, Seed, Source, flood};
 pub use id_hash::{IdHasher, IdSet};
 pub use ids::{EdgeId, FaceId, HalfedgeId, VertexId};
 pub use loops::boundary_loops;
-pub use map::{CornerMap, EdgeMap, FaceMap, IdMap, VertexMap};
+pub use map::{CornerMap, FaceMap, IdMap, VertexMap};
 pub use measure::{
-    EdgeLengths, Topology, area, bounds, component_topologies, dihedral_angle, edge_lengths, topology, volume,
+    EdgeLengths, Topology, area, bounds, centroid, component_topologies, dihedral_angle, edge_lengths, topology, volume,
 };
 pub use mesh::TriMesh;
 pub use normal::{

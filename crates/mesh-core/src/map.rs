@@ -1,6 +1,6 @@
 //! Vectors indexed by typed ids: attributes that the caller owns.
 
-use crate::ids::{EdgeId, FaceId, HalfedgeId, VertexId};
+use crate::ids::{FaceId, HalfedgeId, VertexId};
 use std::marker::PhantomData;
 use std::ops::{Index, IndexMut};
 
@@ -23,8 +23,6 @@ pub type VertexMap<T> = IdMap<VertexId, T>;
 pub type FaceMap<T> = IdMap<FaceId, T>;
 /// One value per triangle corner, addressed by the halfedge that leaves it. UV seams live here.
 pub type CornerMap<T> = IdMap<HalfedgeId, T>;
-/// One value per edge. Sparse: sized by halfedges, addressed by [`EdgeId`].
-pub type EdgeMap<T> = IdMap<EdgeId, T>;
 
 impl<I: Id, T> IdMap<I, T> {
     /// `len` copies of `value`.

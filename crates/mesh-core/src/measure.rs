@@ -17,6 +17,12 @@ pub fn bounds<M: Faces + Positions>(mesh: &M) -> Bounds {
     Bounds::of(mesh.vertex_ids().map(|v| mesh.position(v)))
 }
 
+/// The middle of a triangle: the mean of its corners.
+#[inline]
+pub fn centroid(corners: [DVec3; 3]) -> DVec3 {
+    corners.iter().sum::<DVec3>() / 3.0
+}
+
 /// Surface area, in square model units. O(n), parallel.
 pub fn area<M: Faces + Positions + Sync>(mesh: &M) -> f64 {
     sum_over_faces(mesh, |triangle| area_vector(triangle).length())
@@ -40,7 +46,7 @@ fn sum_over_faces<M: Faces + Positions + Sync>(mesh: &M, term: impl Fn([DVec3; 3
         .into_par_iter()
         .map(|block| {
             let range = block * BLOCK..faces.min((block + 1) * BLOCK);
-            range.map(|f| term(mesh.corners(FaceId(f)).map(|v| mesh.position(v)))).sum()
+            range.map(|f| term(mesh.triangle(FaceId(f)))).sum()
         })
         .collect();
     blocks.iter().sum()
@@ -63,7 +69,7 @@ pub struct EdgeLengths {
 pub fn edge_lengths<M: Adjacency + Positions>(mesh: &M) -> Option<EdgeLengths> {
     let mut all = EdgeLengths { count: 0, min: f64::INFINITY, mean: 0.0, max: 0.0 };
     for h in edges(mesh) {
-        let length = mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h)));
+        let length = mesh.edge_length(h);
         all.count += 1;
         all.min = all.min.min(length);
         all.max = all.max.max(length);
@@ -75,7 +81,7 @@ pub fn edge_lengths<M: Adjacency + Positions>(mesh: &M) -> Option<EdgeLengths> {
 
 /// The lower halfedge of every edge, ascending.
 fn edges<M: Adjacency>(mesh: &M) -> impl Iterator<Item = HalfedgeId> + '_ {
-    (0..3 * mesh.face_count() as u32).map(HalfedgeId).filter(|&h| mesh.edge(h).0 == h.0)
+    mesh.halfedge_ids().filter(|&h| mesh.edge(h).0 == h.0)
 }
 
 /// The angle between the normals of the two faces at an edge, in radians in [−π, π]: 0 flat, positive convex,

@@ -19,6 +19,20 @@ impl TriMesh {
         Self { positions, faces: faces.into_iter().map(|c| c.map(VertexId)).collect() }
     }
 
+    /// Several meshes as one, their vertices and faces one mesh after the other.
+    pub fn merged<'a>(parts: impl IntoIterator<Item = &'a Self>) -> Self {
+        let mut all = Self::default();
+        parts.into_iter().for_each(|part| all.append(part));
+        all
+    }
+
+    /// Adds another mesh's vertices and faces after its own.
+    pub fn append(&mut self, other: &Self) {
+        let first = self.positions.len() as u32;
+        self.positions.extend_from_slice(&other.positions);
+        self.faces.extend(other.faces.iter().map(|c| c.map(|v| VertexId(v.0 + first))));
+    }
+
     /// The three corner points of a triangle.
     #[inline]
     pub fn triangle(&self, f: FaceId) -> [DVec3; 3] {

@@ -54,14 +54,10 @@ pub fn corner_angle(corners: [DVec3; 3], k: usize) -> f64 {
     if angle.is_finite() && u != DVec3::ZERO && v != DVec3::ZERO { angle } else { 0.0 }
 }
 
-fn points<M: Faces + Positions>(mesh: &M, f: FaceId) -> [DVec3; 3] {
-    mesh.corners(f).map(|v| mesh.position(v))
-}
-
 /// The unit normal of a face; zero when it has none. See [`triangle_normal`].
 #[inline]
 pub fn face_normal<M: Faces + Positions>(mesh: &M, f: FaceId) -> DVec3 {
-    triangle_normal(points(mesh, f))
+    triangle_normal(mesh.triangle(f))
 }
 
 /// The unit normals of all faces; zero for faces that have none. O(n), parallel.
@@ -82,7 +78,7 @@ pub fn vertex_normals<M: Adjacency + Positions + Sync>(mesh: &M) -> VertexMap<DV
 pub fn one_sided_normal<M: Faces + Positions>(mesh: &M, v: VertexId, faces: impl IntoIterator<Item = FaceId>) -> DVec3 {
     let weighted = |f: FaceId| {
         let corner = mesh.corners(f).iter().position(|&c| c == v)?;
-        let p = points(mesh, f);
+        let p = mesh.triangle(f);
         Some(corner_angle(p, corner) * triangle_normal(p))
     };
     faces.into_iter().filter_map(weighted).sum::<DVec3>().normalize_or_zero()
@@ -97,7 +93,7 @@ pub fn corner_normals<M: Adjacency + Positions + Sync>(mesh: &M, crease_angle: f
     let normals = face_normals(mesh);
     let angles: Vec<[f64; 3]> = (0..mesh.face_count() as u32)
         .into_par_iter()
-        .map(|f| points(mesh, FaceId(f)))
+        .map(|f| mesh.triangle(FaceId(f)))
         .map(|p| [0, 1, 2].map(|k| corner_angle(p, k)))
         .collect();
     let flattest = crease_angle.cos();
@@ -174,7 +170,7 @@ mod tests {
         }
         let ball = Connected::new(shapes::icosphere(1.0, 3)).unwrap();
         let (corners, vertices) = (corner_normals(&ball, 0.7), vertex_normals(&ball));
-        for h in (0..3 * ball.face_count() as u32).map(HalfedgeId) {
+        for h in ball.halfedge_ids() {
             assert_eq!(corners[h], corners[ball.outgoing(ball.tail(h)).unwrap()]);
             assert!((corners[h] - vertices[ball.tail(h)]).length() < 1e-15);
         }

@@ -92,7 +92,7 @@ fn pieces(mesh: &TriMesh) -> Vec<Piece> {
         let mut next = 0;
         while let Some(&(f, flip)) = piece.faces.get(next) {
             next += 1;
-            for h in (0..3).map(|k| HalfedgeId::new(f, k)) {
+            for h in f.halfedges() {
                 let t = HalfedgeId(across[h.index()]);
                 if t.0 == NONE {
                     piece.closed = false;
@@ -123,19 +123,8 @@ fn solid_angle(corners: [DVec3; 3], at: DVec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{VertexId, shapes, validate, volume};
+    use crate::{shapes, validate, volume};
     use proptest::prelude::*;
-
-    /// Several shapes in one mesh.
-    fn merged(parts: &[TriMesh]) -> TriMesh {
-        let mut all = TriMesh::default();
-        for part in parts {
-            let offset = all.positions.len() as u32;
-            all.positions.extend(&part.positions);
-            all.faces.extend(part.faces.iter().map(|c| c.map(|v| VertexId(v.0 + offset))));
-        }
-        all
-    }
 
     fn moved(mesh: TriMesh, by: [f64; 3]) -> TriMesh {
         shapes::posed(mesh, glam::DQuat::IDENTITY, DVec3::from(by))
@@ -162,9 +151,9 @@ mod tests {
             mesh
         };
         let outer = shapes::cuboid(DVec3::splat(4.0));
-        let hollow = merged(&[outer.clone(), inverted(shapes::icosphere(1.0, 1))]);
+        let hollow = TriMesh::merged(&[outer.clone(), inverted(shapes::icosphere(1.0, 1))]);
         assert_eq!(orient(&hollow).0, hollow);
-        let apart = merged(&[outer, inverted(moved(shapes::icosphere(1.0, 1), [9.0, 0.0, 0.0]))]);
+        let apart = TriMesh::merged(&[outer, inverted(moved(shapes::icosphere(1.0, 1), [9.0, 0.0, 0.0]))]);
         assert!(volume(&orient(&apart).0) > volume(&apart) + 6.0);
         let sheet = inverted(shapes::grid(1.0, 1.0, 3, 3));
         assert_eq!(orient(&sheet).0, sheet);

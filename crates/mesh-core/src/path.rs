@@ -15,7 +15,7 @@ use std::collections::{BinaryHeap, HashMap};
 /// ```
 /// use mesh_core::{Connected, Faces, Positions, VertexId, shapes, shortest_path};
 /// let cube = Connected::new(shapes::cuboid(glam::DVec3::ONE))?;
-/// let length = |h| cube.position(cube.tail(h)).distance(cube.position(cube.head(h)));
+/// let length = |h| cube.edge_length(h);
 /// let path = shortest_path(&cube, VertexId(0), VertexId(7), length).unwrap();
 /// assert_eq!(path.len(), 2); // a diagonal and an edge
 /// # Ok::<(), mesh_core::NotManifold>(())

@@ -145,17 +145,6 @@ mod tests {
     use glam::DVec3;
     use proptest::prelude::*;
 
-    /// Several shapes in one mesh.
-    fn merged(parts: &[TriMesh]) -> TriMesh {
-        let mut all = TriMesh::default();
-        for part in parts {
-            let offset = all.positions.len() as u32;
-            all.positions.extend(&part.positions);
-            all.faces.extend(part.faces.iter().map(|c| c.map(|v| VertexId(v.0 + offset))));
-        }
-        all
-    }
-
     /// Vertices at equal places made one.
     fn welded(mesh: &TriMesh) -> TriMesh {
         let first = |v: VertexId| {
@@ -201,7 +190,7 @@ mod tests {
     fn touching_boxes_come_apart() {
         let cube = || shapes::cuboid(DVec3::ONE);
         for (by, copies) in [([1.0, 1.0, 0.0], 2), ([1.0, 1.0, 1.0], 1)] {
-            let both = welded(&merged(&[cube(), moved(cube(), by)]));
+            let both = welded(&TriMesh::merged(&[cube(), moved(cube(), by)]));
             assert!(!validate(&both).is_manifold());
             let (out, origins) = split(&both);
             assert!(validate(&out).is_closed());

@@ -31,11 +31,11 @@ impl SurfacePoint {
         match *self {
             Self::Vertex(v) => mesh.position(v),
             Self::Edge { halfedge, t } => {
-                let (a, b) = (mesh.position(mesh.tail(halfedge)), mesh.position(mesh.head(halfedge)));
+                let [a, b] = mesh.ends(halfedge);
                 a + t * (b - a)
             }
             Self::Face { face, barycentric: [u, v, w] } => {
-                let [a, b, c] = mesh.corners(face).map(|v| mesh.position(v));
+                let [a, b, c] = mesh.triangle(face);
                 u * a + v * b + w * c
             }
         }

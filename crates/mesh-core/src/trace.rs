@@ -130,7 +130,7 @@ pub fn trace<M: Adjacency + Positions>(
 }
 
 fn longest_edge<M: Faces + Positions>(mesh: &M, f: FaceId) -> f64 {
-    let [a, b, c] = mesh.corners(f).map(|v| mesh.position(v));
+    let [a, b, c] = mesh.triangle(f);
     a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 
@@ -178,7 +178,7 @@ impl<M: Adjacency + Positions> PlaneWalk<'_, M> {
         let towards = self.goal - self.start;
         let mut best = None;
         for f in from.faces(self.mesh) {
-            for h in (0..3).map(|k| HalfedgeId::new(f, k)).filter(|&h| self.is_exit(h)) {
+            for h in f.halfedges().into_iter().filter(|&h| self.is_exit(h)) {
                 let heading = (self.crossing(h).position(self.mesh) - self.start).normalize_or_zero().dot(towards);
                 let leaves = match from {
                     SurfacePoint::Vertex(v) => self.mesh.tail(h) != v && self.mesh.head(h) != v,
@@ -258,7 +258,7 @@ fn straightest_in_strip<M: Adjacency + Positions>(
             return pull_straight(mesh, from, to, &exits, limit);
         }
         let at = entry.map_or(from.position(mesh), middle);
-        for h in (0..3).map(|k| HalfedgeId::new(f, k)) {
+        for h in f.halfedges() {
             if let Some(next) = mesh.twin(h)
                 && !entered.contains_key(&next.face())
             {
@@ -277,14 +277,14 @@ fn pull_straight<M: Adjacency + Positions>(
     exits: &[HalfedgeId],
     limit: f64,
 ) -> Option<Vec<SurfacePoint>> {
-    let ends = |h: HalfedgeId| (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
+    let middle = |&h: &HalfedgeId| mesh.ends(h)[0].midpoint(mesh.ends(h)[1]);
     let mut places = vec![from.position(mesh)];
-    places.extend(exits.iter().map(|&h| ends(h).0.midpoint(ends(h).1)));
+    places.extend(exits.iter().map(middle));
     places.push(to.position(mesh));
     let mut parameters = vec![0.5; exits.len()];
     for _ in 0..4 * exits.len() + 8 {
         for (i, &h) in exits.iter().enumerate() {
-            let (a, b) = ends(h);
+            let [a, b] = mesh.ends(h);
             let along = b - a;
             let flat = |p: DVec3| {
                 let t = ((p - a).dot(along) / along.length_squared()).clamp(-1e3, 1e3);

@@ -28,6 +28,14 @@ pub trait Faces {
         (0..self.vertex_count() as u32).map(VertexId)
     }
 
+    /// Every halfedge id in order.
+    fn halfedge_ids(&self) -> impl ExactSizeIterator<Item = HalfedgeId> + use<Self>
+    where
+        Self: Sized,
+    {
+        (0..3 * self.face_count() as u32).map(HalfedgeId)
+    }
+
     /// The vertex a halfedge leaves.
     #[inline]
     fn tail(&self, h: HalfedgeId) -> VertexId {
@@ -64,6 +72,22 @@ pub trait Adjacency: Faces {
         let start = self.outgoing(v);
         Ring { mesh: self, start, next: start }
     }
+
+    /// The triangles across the sides of `f`.
+    fn neighbours(&self, f: FaceId) -> impl Iterator<Item = FaceId>
+    where
+        Self: Sized,
+    {
+        f.halfedges().into_iter().filter_map(|h| self.twin(h)).map(HalfedgeId::face)
+    }
+
+    /// The halfedge from `a` to `b`, if they are neighbours.
+    fn halfedge(&self, a: VertexId, b: VertexId) -> Option<HalfedgeId>
+    where
+        Self: Sized,
+    {
+        self.ring(a).find(|&h| self.head(h) == b)
+    }
 }
 
 /// Turns around a vertex; see [`Adjacency::ring`].
@@ -87,6 +111,34 @@ impl<M: Adjacency> Iterator for Ring<'_, M> {
 pub trait Positions {
     /// Where a vertex is.
     fn position(&self, v: VertexId) -> DVec3;
+
+    /// The three corner points of a triangle.
+    #[inline]
+    fn triangle(&self, f: FaceId) -> [DVec3; 3]
+    where
+        Self: Faces + Sized,
+    {
+        self.corners(f).map(|v| self.position(v))
+    }
+
+    /// The points at a halfedge's tail and head.
+    #[inline]
+    fn ends(&self, h: HalfedgeId) -> [DVec3; 2]
+    where
+        Self: Faces + Sized,
+    {
+        [self.position(self.tail(h)), self.position(self.head(h))]
+    }
+
+    /// The length of a halfedge, in model units.
+    #[inline]
+    fn edge_length(&self, h: HalfedgeId) -> f64
+    where
+        Self: Faces + Sized,
+    {
+        let [a, b] = self.ends(h);
+        a.distance(b)
+    }
 }
 
 /// Takes a mesh as it is made. May refuse, which stops the maker.

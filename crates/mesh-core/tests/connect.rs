@@ -1,8 +1,7 @@
 //! The parallel corner table and validator: the same for any thread count, and the same as a hash map finds.
 
 use mesh_core::{
-    Adjacency, Connected, Faces, HalfedgeId, TriMesh, VertexId, corner_normals, shapes, validate, vertex_normals,
-    volume,
+    Adjacency, Connected, Faces, TriMesh, VertexId, corner_normals, shapes, validate, vertex_normals, volume,
 };
 use std::collections::HashMap;
 
@@ -25,7 +24,7 @@ fn shuffled_ball() -> TriMesh {
 fn twins_are_those_of_a_hash_map() {
     let ball = shuffled_ball();
     let mesh = with_threads(3, || Connected::new(&ball).unwrap());
-    let halfedges = || (0..3 * mesh.face_count() as u32).map(HalfedgeId);
+    let halfedges = || mesh.halfedge_ids();
     let by_ends: HashMap<_, _> = halfedges().map(|h| ((mesh.tail(h), mesh.head(h)), h)).collect();
     for h in halfedges() {
         assert_eq!(mesh.twin(h), by_ends.get(&(mesh.head(h), mesh.tail(h))).copied());

@@ -75,7 +75,7 @@ fn goes_over_a_crease() {
     let near = |p: DVec3| {
         let f = mesh.face_ids().max_by(|&f, &g| {
             let depth = |f: FaceId| {
-                let [a, b, c] = mesh.corners(f).map(|v| mesh.position(v));
+                let [a, b, c] = mesh.triangle(f);
                 let n = (b - a).cross(c - a);
                 let w = [(c - b, b), (a - c, c), (b - a, a)]
                     .map(|(e, o)| e.cross(p - o).dot(n))
@@ -86,7 +86,7 @@ fn goes_over_a_crease() {
             depth(f).total_cmp(&depth(g))
         });
         let f = f.unwrap();
-        let [a, b, c] = mesh.corners(f).map(|v| mesh.position(v));
+        let [a, b, c] = mesh.triangle(f);
         let n = (b - a).cross(c - a);
         let w = [(c - b, b), (a - c, c), (b - a, a)].map(|(e, o)| e.cross(p - o).dot(n) / n.length_squared());
         SurfacePoint::Face { face: f, barycentric: w }

@@ -106,7 +106,7 @@ impl TriBvh {
         }
         let bounds = bounds_of(mesh, count, &face)?;
         let frame = Frame::around(&bounds);
-        let box_of = |f: FaceId| frame.box_of(corners(mesh, f), f.0);
+        let box_of = |f: FaceId| frame.box_of(mesh.triangle(f), f.0);
         let keys = along_morton_curve(count, |i| box_of(face(i)));
         let faces: Vec<FaceId> = keys.into_par_iter().with_min_len(CHUNK).map(|k| face(index_of(k))).collect();
         let leaves = leaves(count, |i| box_of(faces[i]));
@@ -139,12 +139,6 @@ impl TriBvh {
     pub(crate) fn leaf(&self, node: &Bvh2Node) -> &[FaceId] {
         &self.faces[node.first_index as usize..][..node.prim_count as usize]
     }
-}
-
-/// The corner points of a face.
-#[inline]
-pub(crate) fn corners<M: Faces + Positions>(mesh: &M, face: FaceId) -> [DVec3; 3] {
-    mesh.corners(face).map(|v| mesh.position(v))
 }
 
 /// The box around the faces, all of whose corners exist and are finite.

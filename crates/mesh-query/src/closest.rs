@@ -1,6 +1,6 @@
 //! Closest point on a mesh.
 
-use crate::build::{TriBvh, corners};
+use crate::build::TriBvh;
 use crate::frame::inverse_power_of_two;
 use crate::stack::Stack;
 use crate::triangle::{Nearest, at_barycentric, nearest_to_origin};
@@ -60,7 +60,7 @@ impl TriBvh {
         let mut query = Query::new(self, p, max_distance);
         query.descend(self, mesh);
         let (face, nearest) = query.found?;
-        let point = at_barycentric(corners(mesh, face), nearest.barycentric);
+        let point = at_barycentric(mesh.triangle(face), nearest.barycentric);
         let distance = nearest.distance_squared.sqrt() / query.scale;
         Some(ClosestPoint { face, point, barycentric: nearest.barycentric, distance })
     }
@@ -134,7 +134,7 @@ impl Query {
 
     #[inline]
     fn consider<M: Faces + Positions>(&mut self, mesh: &M, face: FaceId) {
-        let nearest = nearest_to_origin(corners(mesh, face).map(|v| (v - self.p) * self.scale));
+        let nearest = nearest_to_origin(mesh.triangle(face).map(|v| (v - self.p) * self.scale));
         let d = nearest.distance_squared;
         if d < self.best || (d == self.best && self.found.is_none_or(|(f, _)| face < f)) {
             self.limit_to(d);

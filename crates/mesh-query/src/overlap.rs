@@ -3,7 +3,7 @@
 //! Boxes of the tree are compared in model coordinates. Rounding is monotone and a box of the tree contains its
 //! triangles before rounding, so it contains them after; the last word is the exact box of each triangle.
 
-use crate::build::{TriBvh, corners};
+use crate::build::TriBvh;
 use glam::DVec3;
 use mesh_core::{Bounds, FaceId, Faces, Positions};
 use obvhs::bvh2::node::Bvh2Node;
@@ -170,6 +170,6 @@ fn size(bounds: &Bounds) -> f64 {
 
 #[inline]
 fn triangle_bounds<M: Faces + Positions>(mesh: &M, face: FaceId) -> Bounds {
-    let [a, b, c]: [DVec3; 3] = corners(mesh, face);
+    let [a, b, c]: [DVec3; 3] = mesh.triangle(face);
     Bounds { min: a.min(b).min(c), max: a.max(b).max(c) }
 }

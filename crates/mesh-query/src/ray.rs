@@ -1,6 +1,6 @@
 //! Rays against triangles: nearest hit and any hit.
 
-use crate::build::{TriBvh, corners};
+use crate::build::TriBvh;
 use crate::frame::inverse_power_of_two;
 use crate::stack::Stack;
 use glam::{DVec3, Vec3A};
@@ -45,7 +45,7 @@ impl TriBvh {
         let mut ray = Ray::new(self, origin, direction, max_t)?;
         let mut found: Option<RayHit> = None;
         ray.descend(self, |ray, f| {
-            if let Some((t, barycentric)) = ray.meet(corners(mesh, f))
+            if let Some((t, barycentric)) = ray.meet(mesh.triangle(f))
                 && (t < ray.max_t || (t == ray.max_t && found.is_none_or(|h| f < h.face)))
             {
                 ray.max_t = t;
@@ -59,7 +59,7 @@ impl TriBvh {
     /// Whether any triangle is met at 0 ≤ t ≤ `max_t`. Faster than [`TriBvh::ray_cast`].
     pub fn ray_occluded<M: Faces + Positions>(&self, mesh: &M, origin: DVec3, direction: DVec3, max_t: f64) -> bool {
         let Some(mut ray) = Ray::new(self, origin, direction, max_t) else { return false };
-        ray.descend(self, |ray, f| ray.meet(corners(mesh, f)).is_some_and(|(t, _)| t <= ray.max_t))
+        ray.descend(self, |ray, f| ray.meet(mesh.triangle(f)).is_some_and(|(t, _)| t <= ray.max_t))
     }
 }
 

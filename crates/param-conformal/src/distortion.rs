@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use glam::{DVec2, DVec3};
-use mesh_core::{FaceId, Faces, Positions, VertexMap, area_vector};
+use mesh_core::{FaceId, Faces, Positions, VertexMap, area_vector, centroid};
 
 /// How far a map is from keeping shapes. Areas are shares of the whole, so that scale does not matter.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,7 +23,7 @@ pub struct Distortion {
 impl Distortion {
     /// Measures a map given by the corners of each triangle. O(n).
     pub fn of<M: Faces + Positions>(mesh: &M, map: impl Fn(FaceId) -> [DVec2; 3]) -> Self {
-        let area = |f: FaceId| area_vector(space(mesh, f)).length();
+        let area = |f: FaceId| area_vector(mesh.triangle(f)).length();
         let (mut whole, mut whole_mapped) = (0.0, 0.0);
         for f in mesh.face_ids() {
             whole += area(f);
@@ -37,7 +37,7 @@ impl Distortion {
                 found.flipped.push(f);
                 continue;
             }
-            let ratio = axes_ratio(space(mesh, f), plane);
+            let ratio = axes_ratio(mesh.triangle(f), plane);
             let scale = (0.5 * doubled_area(plane) / whole_mapped) / (solid / whole);
             let scale = scale.max(1.0 / scale);
             if !(ratio.is_finite() && scale.is_finite()) {
@@ -53,10 +53,6 @@ impl Distortion {
         found.area_mean = if measured > 0.0 { found.area_mean / measured } else { 1.0 };
         found
     }
-}
-
-fn space<M: Faces + Positions>(mesh: &M, f: FaceId) -> [DVec3; 3] {
-    mesh.corners(f).map(|v| mesh.position(v))
 }
 
 pub(crate) fn doubled_area([a, b, c]: [DVec2; 3]) -> f64 {
@@ -100,6 +96,6 @@ pub(crate) fn check<M: Faces + Positions>(mesh: &M, map: impl Fn(FaceId) -> [DVe
     let [a, b, c] = map(face);
     let size = (b - a).abs().max((c - a).abs());
     let pinned = size.min_element() <= 1e-12 * size.max_element();
-    let at = space(mesh, face).iter().sum::<DVec3>() / 3.0;
+    let at = centroid(mesh.triangle(face));
     Err(Error::Flipped { face, at, count: 1 + flipped.count(), pinned })
 }

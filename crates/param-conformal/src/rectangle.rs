@@ -140,7 +140,7 @@ fn lay_out<M: Adjacency + Positions + Sync>(
     if seam == Seam::Straight {
         let inner = &ring.seam()[..ring.seam().len() - 1];
         let ends = [outline.bottom[0], outline.top[0]];
-        let length = |h: &HalfedgeId| mesh.position(mesh.tail(*h)).distance(mesh.position(mesh.head(*h)));
+        let length = |h: &HalfedgeId| mesh.edge_length(*h);
         let total: f64 = ring.seam().iter().map(length).sum();
         let mut run = 0.0;
         for h in inner {

@@ -54,7 +54,7 @@ impl Ring {
         let cost = |h: HalfedgeId| {
             // A boundary edge is no inner one even where it joins the ends.
             if mesh.twin(h).is_some() && inside(mesh.head(h)) && inside(mesh.tail(h)) {
-                mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h)))
+                mesh.edge_length(h)
             } else {
                 f64::NAN
             }

@@ -107,7 +107,7 @@ fn tubes_unroll() {
     for seam in [Seam::Periodic, Seam::Straight] {
         let map = map_ring(&mesh, &cut, &outline, seam).unwrap();
         for f in mesh.face_ids() {
-            let (p, q) = (mesh.corners(f).map(|v| mesh.position(v)), map.corners(&mesh, f));
+            let (p, q) = (mesh.triangle(f), map.corners(&mesh, f));
             for k in 0..3 {
                 let (a, b) = (p[k].distance(p[(k + 1) % 3]), q[k].distance(q[(k + 1) % 3]));
                 assert!((a - b).abs() < 1e-12, "{seam:?}: {a} {b}");
@@ -121,7 +121,7 @@ fn tubes_unroll() {
     let half = connected(half);
     let map = map_free(&half).unwrap();
     for f in half.face_ids() {
-        let (p, q) = (half.corners(f).map(|v| half.position(v)), half.corners(f).map(|v| map[v]));
+        let (p, q) = (half.triangle(f), half.corners(f).map(|v| map[v]));
         assert!((0..3).all(|k| (p[k].distance(p[(k + 1) % 3]) - q[k].distance(q[(k + 1) % 3])).abs() < 1e-7));
     }
 }

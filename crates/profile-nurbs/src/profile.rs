@@ -33,6 +33,27 @@ pub enum Profile {
 const SPLIT_BELOW: f64 = 0.5;
 
 impl Profile {
+    /// A profile by its name: `arc`, `g2`, `chamfer`, `sharp`, `hermite`, or `conic=W` with W ≥ 0.
+    ///
+    /// ```
+    /// use profile_nurbs::Profile;
+    /// assert_eq!(Profile::named("conic=0.5"), Some(Profile::Conic(0.5)));
+    /// assert_eq!(Profile::named("conic=-1"), None);
+    /// ```
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "arc" => Some(Self::Arc),
+            "g2" => Some(Self::G2),
+            "chamfer" => Some(Self::Chamfer),
+            "sharp" => Some(Self::Sharp),
+            "hermite" => Some(Self::Hermite),
+            _ => {
+                let weight: f64 = name.strip_prefix("conic=")?.parse().ok()?;
+                (weight.is_finite() && weight >= 0.0).then_some(Self::Conic(weight))
+            }
+        }
+    }
+
     /// A custom profile from a curve in the normalised frame.
     ///
     /// # Errors

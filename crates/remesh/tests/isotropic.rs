@@ -56,8 +56,8 @@ fn a_box_keeps_its_edges_and_corners_exactly() {
     let mesh = Connected::new(&fine.mesh).unwrap();
     assert!((volume(&fine.mesh) - volume(&cuboid)).abs() < 1e-12);
     assert!((area(&fine.mesh) - area(&cuboid)).abs() < 1e-12);
-    let sharp: f64 = (0..3 * mesh.face_count() as u32)
-        .map(mesh_core::HalfedgeId)
+    let sharp: f64 = mesh
+        .halfedge_ids()
         .filter(|&h| dihedral_angle(&mesh, h).unwrap().abs() > 1.0)
         .map(|h| fine.mesh.positions[mesh.tail(h).index()].distance(fine.mesh.positions[mesh.head(h).index()]))
         .sum();

@@ -164,7 +164,7 @@ impl<M: Adjacency + Positions> Walk<'_, M> {
     /// Where the plane crosses an edge. The side of each vertex is one rounded number, and zero counts as positive, so
     /// that a plane that enters a face also leaves it.
     fn crossing(&self, h: HalfedgeId) -> Option<DVec3> {
-        let [a, b] = [self.mesh.tail(h), self.mesh.head(h)].map(|v| self.mesh.position(v));
+        let [a, b] = self.mesh.ends(h);
         let [p, q] = [a, b].map(|x| (x - self.origin).dot(self.square));
         ((p < 0.0) != (q < 0.0)).then(|| a.lerp(b, p / (p - q)))
     }

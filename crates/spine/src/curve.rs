@@ -31,15 +31,12 @@ impl BlendCurve {
     /// # Errors
     /// [`Error::NotAnEdge`] where two consecutive vertices are not so joined.
     pub fn from_vertices<M: Adjacency + Positions>(mesh: &M, cycle: &[VertexId]) -> Result<Self, Error> {
-        let halfedges =
-            (0..cycle.len())
-                .map(|i| {
-                    let (a, b) = (cycle[i], cycle[(i + 1) % cycle.len()]);
-                    mesh.ring(a)
-                        .find(|&h| mesh.head(h) == b && mesh.twin(h).is_some())
-                        .ok_or_else(|| Error::NotAnEdge { from: a, to: b, at: mesh.position(a) })
-                })
-                .collect::<Result<_, _>>()?;
+        let halfedge = |i: usize| {
+            let (a, b) = (cycle[i], cycle[(i + 1) % cycle.len()]);
+            let inner = mesh.halfedge(a, b).filter(|&h| mesh.twin(h).is_some());
+            inner.ok_or_else(|| Error::NotAnEdge { from: a, to: b, at: mesh.position(a) })
+        };
+        let halfedges = (0..cycle.len()).map(halfedge).collect::<Result<_, _>>()?;
         Ok(Self { halfedges, closed: true })
     }
 
@@ -50,7 +47,7 @@ impl BlendCurve {
 
     /// Length in model units.
     pub fn length<M: Faces + Positions>(&self, mesh: &M) -> f64 {
-        self.halfedges.iter().map(|&h| mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h)))).sum()
+        self.halfedges.iter().map(|&h| mesh.edge_length(h)).sum()
     }
 
     /// Both ends of an open curve, each with the unit direction in which the curve leaves it; none of a closed one.
@@ -74,7 +71,7 @@ impl BlendCurve {
         let (mut ridge, mut valley) = ((0.0, DVec3::ZERO), (0.0, DVec3::ZERO));
         for &h in &self.halfedges {
             let Some(t) = mesh.twin(h) else { continue };
-            let (a, b) = (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
+            let [a, b] = mesh.ends(h);
             let rise = (mesh.position(mesh.tail(h.prev())) - a).dot(face_normal(mesh, t));
             let kind = if rise > 0.0 { &mut valley } else { &mut ridge };
             if kind.0 == 0.0 {
@@ -93,6 +90,6 @@ impl BlendCurve {
 
 /// Unit normal of the face a halfedge bounds; zero when the face has no area.
 pub(crate) fn face_normal<M: Faces + Positions>(mesh: &M, h: HalfedgeId) -> DVec3 {
-    let [a, b, c] = mesh.corners(h.face()).map(|v| mesh.position(v));
+    let [a, b, c] = mesh.triangle(h.face());
     (b - a).cross(c - a).normalize_or_zero()
 }

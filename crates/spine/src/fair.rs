@@ -122,7 +122,7 @@ pub(crate) fn fair<M: Adjacency + Positions + Sync>(
 /// zero where there are no others.
 fn facet_length<M: Adjacency + Positions>(mesh: &M, samples: &[Sample], closed: bool, side: usize) -> f64 {
     let normal = |s: &Sample| {
-        let [a, b, c] = mesh.corners(s.feet[side].face).map(|v| mesh.position(v));
+        let [a, b, c] = mesh.triangle(s.feet[side].face);
         (b - a).cross(c - a).normalize_or_zero()
     };
     let (mut length, mut turns) = (0.0, 0u32);

@@ -228,12 +228,12 @@ fn first_contact<M: Adjacency + Positions>(
         Convexity::Convex => -1.0,
     };
     // The longest edge of each stretch proposes the centre that is exact between the planes of its two faces.
-    let length = |h: &HalfedgeId| mesh.position(mesh.tail(*h)).distance(mesh.position(mesh.head(*h)));
+    let length = |h: &HalfedgeId| mesh.edge_length(*h);
     let mut guesses: Vec<(f64, DVec3, DVec3)> = Vec::new();
     for stretch in curve.halfedges.chunks(curve.halfedges.len().div_ceil(STRETCHES).max(1)) {
         let longest = stretch.iter().copied().max_by(|g, h| length(g).total_cmp(&length(h)));
         let Some((h, t)) = longest.and_then(|h| Some((h, mesh.twin(h)?))) else { continue };
-        let (a, b) = (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
+        let [a, b] = mesh.ends(h);
         let (left, right) = (face_normal(mesh, h), face_normal(mesh, t));
         let (middle, spread) = (0.5 * (a + b), 1.0 + left.dot(right));
         if spread < 0.02 || left == DVec3::ZERO || right == DVec3::ZERO {

@@ -8,11 +8,12 @@
 mod moved;
 mod sampling;
 
+use crate::Error;
 use crate::curve::{BlendCurve, Convexity};
 use crate::march::Trace;
 use crate::patch::Patch;
 use crate::radius::RadiusField;
-use crate::{Error, MAX_ALPHA};
+use crate::roll::MAX_ALPHA;
 use glam::DVec3;
 use mesh_core::{Adjacency, EdgeId, IdSet, Positions, Watch};
 use moved::MovedPatch;

@@ -69,7 +69,7 @@ impl Patch {
                 if nearest[next] != u32::MAX || barriers.contains(&mesh.edge(h)) {
                     continue;
                 }
-                let triangle = mesh.corners(next).map(|v| mesh.position(v));
+                let triangle = mesh.triangle(next);
                 if let Some(mark) = marks.approach(nearest[face], triangle, reach) {
                     nearest[next] = mark;
                     faces.push(next);
@@ -103,7 +103,7 @@ impl Marks {
     fn along<M: Adjacency + Positions>(mesh: &M, curve: &BlendCurve, spacing: f64) -> Self {
         let (mut points, mut first_of_edge) = (Vec::new(), Vec::new());
         for &h in &curve.halfedges {
-            let (a, b) = (mesh.position(mesh.tail(h)), mesh.position(mesh.head(h)));
+            let [a, b] = mesh.ends(h);
             first_of_edge.push(points.len() as u32);
             // The seam of a boolean is full of edges far shorter than the spacing; one mark for each of them is enough.
             let pieces = (a.distance(b) / spacing).ceil().clamp(1.0, 4096.0) as u32;

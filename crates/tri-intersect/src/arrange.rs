@@ -4,15 +4,16 @@
 //! A *node* is a vertex of a (`0..na`), a vertex of b (`na..na+nb`), or a new point. A vertex of b that coincides with a
 //! vertex of a is that node of a.
 
+mod along;
+
 use crate::crossing::{Crossing, Meeting, cross};
 use crate::error::Error;
-use crate::exact::{Expansion, PAIR_ERROR, Pair, cross2, volume, volume_pair};
-use crate::predicate::{Feature, facing, largest, project, rescaled, scale_for, scaled};
+use crate::predicate::{Feature, largest, rescaled, scale_for, scaled};
+use along::{OnEdge, place, touched_place};
 use glam::DVec3;
 use mesh_core::{Adjacency, Connected, FaceId, Faces, HalfedgeId, TriMesh, VertexId, Watch};
 use rayon::prelude::*;
 use std::borrow::Cow;
-use std::cmp::Ordering;
 
 /// Pairs handed to one task.
 const BATCH: usize = 512;
@@ -214,18 +215,15 @@ impl Arrangement {
         let placed: Vec<(f64, DVec3)> = fresh.par_iter().map(|key| place(parts, key)).collect();
         let (parameters, places) = placed.into_iter().unzip();
         let on_edges = [0, 1].map(|which| {
-            let mut entries: Vec<Entry> = keys
+            let mut entries: Vec<OnEdge> = keys
                 .iter()
                 .zip(&nodes)
                 .filter_map(|(key, &node)| match key[which] {
-                    Simplex::Edge(edge) => {
-                        let (t, error) = parameter(parts, which, edge, key[1 - which]);
-                        Some(Entry { edge, node, carrier: key[1 - which], t, error })
-                    }
+                    Simplex::Edge(edge) => Some(OnEdge::new(parts, which, edge, key[1 - which], node)),
                     _ => None,
                 })
                 .collect();
-            entries.sort_by(|x, y| x.edge.cmp(&y.edge).then_with(|| along(parts, which, x, y)));
+            entries.sort_by(|x, y| x.edge.cmp(&y.edge).then_with(|| x.compare(y, parts, which)));
             entries.into_iter().map(|e| (e.edge, e.node)).collect()
         });
         let generic =
@@ -305,124 +303,5 @@ impl Arrangement {
         let start = list.partition_point(|e| e.0 < edge);
         let end = start + list[start..].partition_point(|e| e.0 == edge);
         &list[start..end]
-    }
-}
-
-struct Entry {
-    edge: u32,
-    node: u32,
-    carrier: Simplex,
-    t: Pair,
-    error: f64,
-}
-
-/// Which of two points comes first along their common edge: by pairs of doubles if their error allows, else exactly.
-fn along(parts: &[Part; 2], which: usize, x: &Entry, y: &Entry) -> Ordering {
-    let gap = x.t.sub(y.t).hi;
-    if gap.abs() > x.error + y.error {
-        return gap.total_cmp(&0.0);
-    }
-    let [(n, d), (m, e)] = [x, y].map(|p| exact_parameter(parts, which, p.edge, p.carrier));
-    let order = n.mul(&e).sub(&m.mul(&d)).sign();
-    let order = if d.sign() == e.sign() { order } else { order.reverse() };
-    // Equal places under different names: only where a mesh meets itself. Any fixed order will do.
-    order.then(x.carrier.cmp(&y.carrier))
-}
-
-fn touched_place(parts: &[Part; 2], key: &Key) -> DVec3 {
-    match *key {
-        [Simplex::Vertex(v), _] => parts[0].mesh.mesh().positions[v as usize],
-        [_, Simplex::Vertex(v)] => parts[1].mesh.mesh().positions[v as usize],
-        _ => place(parts, key).1,
-    }
-}
-
-/// The place of a new point, and its parameter on the edge that carries it.
-fn place(parts: &[Part; 2], key: &Key) -> (f64, DVec3) {
-    let (which, edge) = match *key {
-        [Simplex::Edge(e), _] => (0, e),
-        [_, Simplex::Edge(e)] => (1, e),
-        _ => return (0.0, DVec3::ZERO),
-    };
-    let (t, _) = parameter(parts, which, edge, key[1 - which]);
-    let mesh = parts[which].mesh;
-    let h = HalfedgeId(edge);
-    let positions = &mesh.mesh().positions;
-    let (p, q) = (positions[mesh.tail(h).index()], positions[mesh.head(h).index()]);
-    let x = |i: usize| Pair::sum(q[i], -p[i]).mul(t).add(Pair { hi: p[i], lo: 0.0 }).hi;
-    (t.hi, DVec3::new(x(0), x(1), x(2)))
-}
-
-/// Where along an edge (0 at its tail, 1 at its head) a simplex of the other part meets it, and a bound on the error.
-fn parameter(parts: &[Part; 2], which: usize, edge: u32, carrier: Simplex) -> (Pair, f64) {
-    let [p, q] = parts[which].ends(edge);
-    let other = &parts[1 - which];
-    let (n, d, error) = match carrier {
-        Simplex::Face(f) => {
-            let t = other.triangle(f);
-            let ((n, en), (m, em)) = (volume_pair(t[0], t[1], t[2], p), volume_pair(t[0], t[1], t[2], q));
-            (n, n.sub(m), 2.0 * en + em)
-        }
-        Simplex::Edge(e) => {
-            let [r, s] = other.ends(e);
-            let [p, q, r, s] = planar(p, q, r, s);
-            let cross = |u: [Pair; 2], v: [Pair; 2]| u[0].mul(v[1]).sub(u[1].mul(v[0]));
-            let difference = |u: [f64; 2], v: [f64; 2]| [0, 1].map(|i| Pair::sum(u[i], -v[i]));
-            let size = |u: [Pair; 2]| u[0].hi.abs() + u[1].hi.abs();
-            let (pr, pq, rs) = (difference(r, p), difference(q, p), difference(s, r));
-            (cross(pr, rs), cross(pq, rs), PAIR_ERROR * (size(pr) + 2.0 * size(pq)) * size(rs))
-        }
-        Simplex::Vertex(v) => {
-            let k = longest_axis(q - p);
-            let v = other.points[v as usize];
-            (Pair::sum(v[k], -p[k]), Pair::sum(q[k], -p[k]), PAIR_ERROR * (q[k] - p[k]).abs())
-        }
-    };
-    let error = error / d.hi.abs();
-    if error < 1e-22 {
-        return (n.div(d), error);
-    }
-    let (n, d) = exact_parameter(parts, which, edge, carrier);
-    (n.rounded().div(d.rounded()), PAIR_ERROR)
-}
-
-/// The same as an exact fraction.
-fn exact_parameter(parts: &[Part; 2], which: usize, edge: u32, carrier: Simplex) -> (Expansion, Expansion) {
-    let [p, q] = parts[which].ends(edge);
-    let other = &parts[1 - which];
-    match carrier {
-        Simplex::Face(f) => {
-            let t = other.triangle(f);
-            let n = volume(t[0], t[1], t[2], p);
-            let d = n.sub(&volume(t[0], t[1], t[2], q));
-            (n, d)
-        }
-        Simplex::Edge(e) => {
-            let [r, s] = other.ends(e);
-            let [p, q, r, s] = planar(p, q, r, s);
-            (cross2(p, r, r, s), cross2(p, q, r, s))
-        }
-        Simplex::Vertex(v) => {
-            let k = longest_axis(q - p);
-            let v = other.points[v as usize];
-            (Expansion::difference(v[k], p[k]), Expansion::difference(q[k], p[k]))
-        }
-    }
-}
-
-/// Four coplanar points, not all on one line, seen along an axis that keeps them so.
-fn planar(p: DVec3, q: DVec3, r: DVec3, s: DVec3) -> [[f64; 2]; 4] {
-    let (axis, _) = facing(&[p, q, r]).or(facing(&[p, q, s])).unwrap_or((2, 1));
-    [p, q, r, s].map(|x| project(axis, x))
-}
-
-fn longest_axis(d: DVec3) -> usize {
-    let a = d.abs();
-    if a.x >= a.y && a.x >= a.z {
-        0
-    } else if a.y >= a.z {
-        1
-    } else {
-        2
     }
 }

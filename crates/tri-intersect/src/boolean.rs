@@ -325,7 +325,7 @@ fn check_solid(parts: &[Part; 2]) -> Result<[Bounds; 2], Error> {
                     let [p, q, r] = corners.map(|p| p - origin);
                     volume += p.dot(q.cross(r));
                     let f = FaceId(((i << 14) + j) as u32);
-                    border = border.or((0..3).map(|k| HalfedgeId::new(f, k)).find(|&h| mesh.twin(h).is_none()));
+                    border = border.or(f.halfedges().into_iter().find(|&h| mesh.twin(h).is_none()));
                 }
                 (volume, border.map(|h| h.0), bounds)
             })

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::near::near;
 use crate::seam::chain;
 use glam::DVec3;
-use mesh_core::{Bounds, Connected, FaceId, Faces, HalfedgeId, Positions, SurfacePoint, TriMesh, VertexId, Watch};
+use mesh_core::{Bounds, Connected, FaceId, HalfedgeId, Positions, SurfacePoint, TriMesh, VertexId, Watch};
 
 /// A curve in which two surfaces cross.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,13 +89,13 @@ fn surface_point(mesh: &Connected<TriMesh>, simplex: Simplex, position: DVec3) -
         Simplex::Vertex(v) => SurfacePoint::Vertex(VertexId(v)),
         Simplex::Edge(e) => {
             let halfedge = HalfedgeId(e);
-            let (p, q) = (mesh.position(mesh.tail(halfedge)), mesh.position(mesh.head(halfedge)));
+            let [p, q] = mesh.ends(halfedge);
             let d = (q - p) / (q - p).abs().max_element();
             let t = (position - p).dot(d) / (q - p).dot(d);
             SurfacePoint::Edge { halfedge, t: t.clamp(f64::EPSILON, 1.0 - f64::EPSILON) }
         }
         Simplex::Face(f) => {
-            let barycentric = barycentric(&mesh.mesh().triangle(FaceId(f)), position);
+            let barycentric = barycentric(&mesh.triangle(FaceId(f)), position);
             SurfacePoint::Face { face: FaceId(f), barycentric }
         }
     }

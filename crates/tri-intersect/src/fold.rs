@@ -124,7 +124,7 @@ fn compose(
         VertexOrigin::Input { vertex, .. } => VertexOrigin::Input { part: number, vertex },
         VertexOrigin::Edge { part: 0, ends, t } => {
             on_edge(earlier, ends, t).filter(|o| is_edge(parts, o)).unwrap_or_else(|| {
-                let face = before.ring(ends[0]).find(|&h| before.head(h) == ends[1]).map(HalfedgeId::face);
+                let face = before.halfedge(ends[0], ends[1]).map(HalfedgeId::face);
                 in_face(parts, earlier, face, mesh, VertexId::from(i))
             })
         }

@@ -44,8 +44,9 @@
 //! | `predicate.rs`, `exact.rs` | signs of orientation; numbers beyond 64 bits |
 //! | `near.rs` | the faces that can meet at all |
 //! | `crossing.rs` | how one triangle meets another, in names |
-//! | `arrange.rs` | all crossings of two meshes: named points, placed and in order |
-//! | `triangulate.rs`, `cut.rs` | one cut face; all of them, and the snapping |
+//! | `arrange.rs`, `arrange/` | all crossings of two meshes: named points, placed and in order |
+//! | `triangulate.rs`, `triangulate/` | one cut face |
+//! | `cut.rs` | all of them, and the snapping |
 //! | `classify.rs`, `inside.rs` | sides of the seam, the flood, and components that no seam passes |
 //! | `assemble.rs`, `check.rs` | the result with its origins, and its exact check |
 //! | `tidy.rs`, `pinch.rs`, `seam.rs` | short edges, contacts, seam curves |

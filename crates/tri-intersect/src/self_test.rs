@@ -77,7 +77,7 @@ pub fn self_intersections_among<M: Faces + Positions + Sync>(
 }
 
 fn box_of<M: Faces + Positions>(mesh: &M, f: FaceId) -> Bounds {
-    Bounds::of(mesh.corners(f).map(|v| mesh.position(v)))
+    Bounds::of(mesh.triangle(f))
 }
 
 /// Cells of a coarse grid that the boxes of some faces touch.

@@ -28,7 +28,7 @@ fn bumpy(levels: u32, depth: f64) -> Mesh {
 /// The point of a star-shaped mesh in a direction, by brute force.
 fn shoot(mesh: &Mesh, direction: DVec3) -> SurfacePoint {
     let best = mesh.face_ids().map(|f| {
-        let [a, b, c] = mesh.corners(f).map(|v| mesh.position(v));
+        let [a, b, c] = mesh.triangle(f);
         let weights = [b.cross(c).dot(direction), c.cross(a).dot(direction), a.cross(b).dot(direction)];
         (weights.iter().copied().fold(f64::INFINITY, f64::min), f, weights)
     });
@@ -95,7 +95,7 @@ fn check(input: &Mesh, curves: &[SurfaceCurve], out: &Embedded) -> Mesh {
             assert_eq!((f, mesh.corners(f)), (parent, input.corners(parent)));
         }
         let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
-        let turned = normal(mesh.mesh().triangle(f)).dot(normal(input.mesh().triangle(parent)));
+        let turned = normal(mesh.triangle(f)).dot(normal(input.triangle(parent)));
         assert!(turned > 0.0, "piece {f} of {parent} is folded");
     }
     assert!(pieces.iter().all(|&p| p > 0));
@@ -270,7 +270,7 @@ fn flat_faces_are_crossed() {
     let mut mesh = shapes::cuboid(DVec3::ONE);
     let cube = Connected::new(mesh.clone()).unwrap();
     let h = cube.face_ids().map(|f| HalfedgeId::new(f, 0)).find(|&h| {
-        let (a, b) = (cube.position(cube.tail(h)), cube.position(cube.head(h)));
+        let [a, b] = cube.ends(h);
         (a - b).abs().element_sum() == 1.0
     });
     let h = h.unwrap();

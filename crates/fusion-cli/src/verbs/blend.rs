@@ -4,6 +4,7 @@ use crate::args::{Blend as Args, Target};
 use crate::failure::Failure;
 use crate::output::print;
 use crate::session::{Destination, Session, counts, joint_diagonal};
+use crate::text_file::read_text;
 use fusion::{Error, Outcome, Picked, blend, features, picked_from_text, round, sharpen};
 use mesh_io::{Format, Model};
 use serde_json::json;
@@ -65,16 +66,12 @@ fn sharpened(session: &Session, args: &Args, model: &Model, format: Format) -> R
     }
 }
 
-/// The refusal with the input called by its name.
 fn refused(args: &Args, error: &fusion::Error) -> Failure {
-    Failure::of(error, error.to_string().replace("part 0 ", &format!("{} ", args.input.display())))
+    Failure::of_files(error, std::slice::from_ref(&args.input))
 }
 
 fn picked(args: &Args) -> Result<Vec<Picked>, Failure> {
-    let Some(path) = &args.curves else { return Ok(vec![]) };
-    let fault = |e: &dyn std::fmt::Display| Failure::unreadable(format!("{}: {e}", path.display()));
-    let text = std::fs::read_to_string(path).map_err(|e| fault(&e))?;
-    picked_from_text(&text).map_err(|e| fault(&e))
+    args.curves.as_ref().map_or(Ok(vec![]), |path| read_text(path, picked_from_text))
 }
 
 /// Prints the largest radius that fits.

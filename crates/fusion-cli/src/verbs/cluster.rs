@@ -4,8 +4,8 @@ use crate::clustering::Cluster as Args;
 use crate::failure::Failure;
 use crate::output::check_writable;
 use crate::session::{Destination, Session, counts, is_stream};
-use fusion::cluster::{CoverParams, Params, PatchParams, Spec, StripParams, cluster, clusters_from_toml};
-use std::fs;
+use crate::text_file::read_text;
+use fusion::cluster::{CoverParams, Params, PatchParams, StripParams, cluster, clusters_from_toml};
 
 /// Blends the clusters of a polyhedron and writes the result.
 pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
@@ -17,7 +17,7 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         }
         check_writable(file)?;
     }
-    let clusters = args.clusters.as_deref().map(read_clusters).transpose()?;
+    let clusters = args.clusters.as_ref().map(|path| read_text(path, clusters_from_toml)).transpose()?;
     let model = session.read(&args.input, &args.source)?;
     let strip = StripParams {
         order: args.order.unwrap_or(args.continuity),
@@ -58,10 +58,4 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     }
     let outcome = &made.outcome;
     session.write_with(&destination, &outcome.model, Some(&outcome.origins), files, &outcome.report)
-}
-
-fn read_clusters(path: &std::path::Path) -> Result<Vec<Spec>, Failure> {
-    let bad = |e: &dyn std::fmt::Display| Failure::unreadable(format!("{}: {e}", path.display()));
-    let text = fs::read_to_string(path).map_err(|e| bad(&e))?;
-    clusters_from_toml(&text).map_err(|e| bad(&e))
 }

@@ -1,7 +1,7 @@
 //! `compose`: joins openings by a smooth surface.
 
-use crate::args::Compose as Args;
-use crate::failure::Failure;
+use crate::composing::Compose as Args;
+use crate::failure::{Failure, with_files};
 use crate::session::{Destination, Session, counts, joint_diagonal};
 use fusion::compose::{self, compose};
 use fusion::{Region, detail};
@@ -23,7 +23,7 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         adjust: args.adjust.map(|l| l.resolve(diagonal)),
         ..compose::Params::new(destination.format)
     };
-    let mut outcome = compose(&models, &params, session.watch()).map_err(|e| explain(&e, args))?;
+    let mut outcome = compose(&models, &params, session.watch()).map_err(|e| Failure::of_files(&e, &args.inputs))?;
     if !args.details.is_empty() {
         let sources = args.details.iter().map(|d| Ok((d.part, d.place.resolve(diagonal)?)));
         let params = detail::Params {
@@ -32,26 +32,12 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
             transfer: fusion::detail_transfer::Params::default(),
             format: destination.format,
         };
-        outcome = detail::onto(outcome, &models, &params, session.watch()).map_err(|e| explain(&e, args))?;
+        outcome = detail::onto(outcome, &models, &params, session.watch())
+            .map_err(|e| Failure::of_files(&e, &args.inputs))?;
     }
     outcome.report.inputs = counts(&args.inputs, &models);
     for warning in &mut outcome.report.warnings {
-        *warning = with_names(warning, args);
+        *warning = with_files(warning, &args.inputs);
     }
     session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
-}
-
-/// The library counts parts; the user knows files.
-fn explain(error: &fusion::Error, args: &Args) -> Failure {
-    Failure::of(error, with_names(&error.to_string(), args))
-}
-
-fn with_names(text: &str, args: &Args) -> String {
-    let mut text = text.to_string();
-    for (i, path) in args.inputs.iter().enumerate() {
-        for end in [" ", ",", ":"] {
-            text = text.replace(&format!("part {i}{end}"), &format!("{}{end}", path.display()));
-        }
-    }
-    text
 }

@@ -10,9 +10,8 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     let destination = Destination::check(&args.target, session)?;
     let model = session.read(&args.input, &args.source)?;
     let params = Params::new(vec![how(args)], destination.format);
-    let name = args.input.display();
-    let mut outcome = cut(&model, &params, session.watch())
-        .map_err(|e| Failure::of(&e, e.to_string().replace("part 0 ", &format!("{name} "))))?;
+    let mut outcome =
+        cut(&model, &params, session.watch()).map_err(|e| Failure::of_files(&e, std::slice::from_ref(&args.input)))?;
     outcome.report.inputs = counts(std::slice::from_ref(&args.input), std::slice::from_ref(&model));
     session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
 }

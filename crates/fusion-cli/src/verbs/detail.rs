@@ -27,10 +27,7 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         transfer: args.how.resolve(diagonal),
         format: destination.format,
     };
-    let named = |text: String| {
-        paths.iter().enumerate().fold(text, |t, (i, p)| t.replace(&format!("part {i} "), &format!("{} ", p.display())))
-    };
-    let mut outcome = detail(&models, &params, session.watch()).map_err(|e| Failure::of(&e, named(e.to_string())))?;
+    let mut outcome = detail(&models, &params, session.watch()).map_err(|e| Failure::of_files(&e, &paths))?;
     outcome.report.inputs = counts(&paths, &models);
     session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
 }

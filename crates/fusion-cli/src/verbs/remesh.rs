@@ -21,9 +21,8 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         .smoothed(args.smooth.map(|way| way.resolve(diagonal)))
         .with_features(args.angle)
         .within(region);
-    let name = args.input.display();
     let mut outcome = remesh(&model, &params, session.watch())
-        .map_err(|e| Failure::of(&e, e.to_string().replace("part 0 ", &format!("{name} "))))?;
+        .map_err(|e| Failure::of_files(&e, std::slice::from_ref(&args.input)))?;
     outcome.report.inputs = counts(std::slice::from_ref(&args.input), models);
     session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
 }

@@ -4,6 +4,7 @@ use crate::args::{Color, Render as Args};
 use crate::failure::Failure;
 use crate::output::check_writable;
 use crate::session::{Session, counts};
+use crate::text_file::read_text;
 use fusion::mesh_core::TriMesh;
 use fusion::{Report, render};
 use serde_json::Value;
@@ -60,15 +61,15 @@ pub fn draw(session: &Session, mesh: &TriMesh, params: &render::Params) -> Resul
 
 /// A palette index per face, from a file of origins: the parts apart, and apart from what was made new.
 fn indices(path: &Path) -> Result<Vec<u32>, Failure> {
-    let bad = |e: &dyn std::fmt::Display| Failure::unreadable(format!("{}: {e}", path.display()));
-    let text = fs::read_to_string(path).map_err(|e| bad(&e))?;
-    let json: Value = serde_json::from_str(&text).map_err(|e| bad(&e))?;
-    let faces = json["faces"].as_array().ok_or_else(|| bad(&"has no list of faces"))?;
     let index = |entry: &Value| match entry[0].as_str() {
         Some("new") => Some(fusion::palette_index(None)),
         Some(_) => entry[1].as_u64().map(|part| fusion::palette_index(Some(part as u32))),
         None => None,
     };
-    let missing = || bad(&"a face's entry is not as docs/report.md describes it");
-    faces.iter().map(|entry| index(entry).ok_or_else(missing)).collect()
+    read_text(path, |text| {
+        let json: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
+        let faces = json["faces"].as_array().ok_or("has no list of faces")?;
+        let missing = || String::from("a face's entry is not as docs/report.md describes it");
+        faces.iter().map(|entry| index(entry).ok_or_else(missing)).collect::<Result<_, String>>()
+    })
 }

@@ -3,7 +3,9 @@
 use super::trouble::Trouble;
 use super::{Blended, Error, Params, ROUNDS, Surface, attempt, explained, field};
 use glam::DVec3;
-use mesh_core::{Adjacency, Connected, Faces, Origins, Positions, Stage, TriMesh, VertexId, VertexOrigin, Watch};
+use mesh_core::{
+    Adjacency, Connected, FaceId, Faces, Origins, Positions, Stage, TriMesh, VertexId, VertexOrigin, Watch,
+};
 use spine::{BlendCurve, Convexity};
 
 /// Curves nearer to each other than this, in radii, are blended in the same way: their blends may meet.
@@ -139,21 +141,7 @@ struct SoFar<'a> {
 
 impl<'a> SoFar<'a> {
     fn new(input: &'a Connected<TriMesh>, all: &'a [BlendCurve]) -> Self {
-        let blended = Blended {
-            mesh: TriMesh::default(),
-            origins: Origins::default(),
-            first_blend_face: mesh_core::FaceId(0),
-            strips: 0,
-            fields: 0,
-            corners: 0,
-            residual: 0.0,
-            bridged: 0,
-            shrunk: vec![],
-            fallbacks: vec![],
-            run_outs: vec![],
-            levels: 0,
-            full_share: 1.0,
-        };
+        let blended = Blended::new(TriMesh::default(), Origins::default(), FaceId(0));
         Self { input, all, mesh: None, blended, length: 0.0 }
     }
 
@@ -179,7 +167,7 @@ impl<'a> SoFar<'a> {
             let halfedge = |h| {
                 let ends = [self.input.tail(h), self.input.head(h)];
                 let [a, b] = [now[ends[0].index()]?, now[ends[1].index()]?];
-                mesh.ring(a).find(|&g| mesh.head(g) == b)
+                mesh.halfedge(a, b)
             };
             let halfedges: Option<Vec<_>> = curve.halfedges.iter().map(|&h| halfedge(h)).collect();
             let at = || curve.halfedges.first().map_or(DVec3::ZERO, |&h| self.input.position(self.input.tail(h)));

@@ -2,7 +2,7 @@
 
 use super::network::{Dart, Kind, Network};
 use glam::DVec3;
-use mesh_core::{Connected, Faces, Positions, TriMesh, dihedral_angle};
+use mesh_core::{Connected, Positions, TriMesh, dihedral_angle};
 use spine::{BlendCurve, Dip, RadiusField};
 
 /// Length over which a ball runs out, in radii, and its largest share of the curve.
@@ -64,7 +64,7 @@ impl Way {
         let (mut points, mut turns, mut length) = (vec![], vec![], 0.0);
         for k in 0..n {
             let h = chain[if dart.end == 0 { k } else { n - 1 - k }];
-            let mut ends = [mesh.tail(h), mesh.head(h)].map(|v| mesh.position(v));
+            let mut ends = mesh.ends(h);
             if dart.end == 1 {
                 ends.reverse();
             }

@@ -237,10 +237,7 @@ impl Ends<'_> {
                 let h = HalfedgeId::new(face, corner);
                 let Some(t) = mesh.twin(h).filter(|_| !walls.contains(&mesh.edge(h))) else { continue };
                 let near =
-                    mesh_query::closest_point_on_triangle(place, mesh.corners(t.face()).map(|v| mesh.position(v)))
-                        .0
-                        .distance(place)
-                        < reach;
+                    mesh_query::closest_point_on_triangle(place, mesh.triangle(t.face())).0.distance(place) < reach;
                 if near && seen.insert(t.face()) {
                     faces.push(t.face());
                 }
@@ -277,7 +274,7 @@ fn on_crease(
 ) -> Option<SurfacePoint> {
     let ray = [foot - reach * out, foot + reach * out];
     let candidates = crease.iter().map(|&halfedge| {
-        let ends = [mesh.position(mesh.tail(halfedge)), mesh.position(mesh.head(halfedge))];
+        let ends = mesh.ends(halfedge);
         let (s, t) = corner::closest_between(ray, ends);
         let distance = ray[0].lerp(ray[1], s).distance(ends[0].lerp(ends[1], t));
         (distance, SurfacePoint::Edge { halfedge, t }, t)

@@ -2,7 +2,7 @@
 
 use super::{Error, Overlap, Params, ROUNDS, Trouble, attempt};
 use glam::DVec3;
-use mesh_core::{Bounds, Connected, Faces, HalfedgeId, Positions, TriMesh, Watch};
+use mesh_core::{Bounds, Connected, HalfedgeId, Positions, TriMesh, Watch};
 use spine::BlendCurve;
 
 /// How large a ball may be, and why no larger.
@@ -95,9 +95,9 @@ struct Search<'a> {
 impl Search<'_> {
     /// Of the box around the curves.
     fn diagonal(&self) -> f64 {
-        let ends = |h: &HalfedgeId| [self.mesh.tail(*h), self.mesh.head(*h)].map(|v| self.mesh.position(v));
+        let ends = |h: &HalfedgeId| self.mesh.ends(*h);
         let points = self.curves.iter().flat_map(|c| &c.halfedges).flat_map(ends);
-        let bounds = points.fold(Bounds::EMPTY, |b, p| b.union(Bounds::of([p; 3])));
+        let bounds = Bounds::of(points);
         bounds.max.distance(bounds.min)
     }
 

@@ -3,6 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `mod.rs` | the stages, and the loop that makes the ball smaller where it does not fit |
+//! | `params.rs`, `error.rs` | how curves are blended; why they cannot be |
 //! | `vicinity.rs` | the part of a large mesh that the blend is made on |
 //! | `auto.rs` | which curves are swept and which are blended as a field |
 //! | `limit.rs` | the largest radius that fits |
@@ -28,6 +29,7 @@ mod auto;
 mod corner;
 mod dwindle;
 mod ending;
+mod error;
 mod field;
 mod fill;
 pub mod keep;
@@ -35,6 +37,7 @@ mod limit;
 mod linkage;
 mod mends;
 mod network;
+mod params;
 mod plate;
 mod profiles;
 mod radii;
@@ -46,16 +49,17 @@ mod strip;
 mod trouble;
 mod vicinity;
 
-use ending::Ends;
+use ending::{Ends, Layout};
+pub use error::Error;
 use fill::fill;
 use glam::DVec3;
 pub(crate) use limit::rough_max_radius;
 pub use limit::{Limit, max_radius};
-use linkage::cut_linkages;
+use linkage::{Opened, cut_linkages};
 use mends::Mends;
-use mesh_core::{Cancelled, Connected, FaceId, Faces, NotManifold, Origins, Positions, TriMesh, VertexId, Watch};
+use mesh_core::{Connected, FaceId, Faces, Origins, Positions, TriMesh, VertexId, Watch, centroid};
 use network::Network;
-use profile_nurbs::Profile;
+pub use params::{Overlap, Params, Surface};
 use profiles::Profiles;
 pub use radii::Radii;
 use rolling::{REACH_AHEAD, roll_missing, step_length};
@@ -63,97 +67,9 @@ use sew::{between, sew};
 use sketch::piece_of;
 pub use sketch::{Drawing, Sketch};
 pub use spine::BlendCurve;
-use spine::{Rail, Solver};
-use strip::{Fineness, sweep};
+use spine::Rail;
+use strip::{Fineness, Piece, Strip, sweep};
 use trouble::Trouble;
-
-/// How curves are blended.
-#[derive(Clone, Debug)]
-pub struct Params {
-    /// Ball radius, in model units; the largest one where it varies. Positive and finite.
-    pub radius: f64,
-    /// How it varies.
-    pub radii: Radii,
-    /// Cross-section of the blend.
-    pub profile: Profile,
-    /// Places and the cross-section there, as for the keys of [`Radii`]; `profile` is the one away from them. In between
-    /// the two are mixed point by point.
-    pub profile_at: Vec<(DVec3, Profile)>,
-    /// Distance of the apex from the ball's centre in radii, if it is moved out along its line; see
-    /// [`profile_nurbs::Section::with_reach`]. The blend then meets the surfaces at an angle.
-    pub reach: Option<f64>,
-    /// What to do where the ball does not fit.
-    pub overlap: Overlap,
-    /// What finds the way of the ball's centre.
-    pub solver: Solver,
-    /// Least reach of the base patches, as a multiple of the radius; see [`spine::Params::alpha`].
-    pub alpha: f64,
-    /// Longest gap that is bridged where the sweep folds, in radii; see [`spine::Params::bridge`].
-    pub bridge: f64,
-    /// Largest sagitta of the blend's chords across, as a share of the radius.
-    pub tolerance: f64,
-    /// How far linkage vertices may be moved to spare slivers, as a share of the radius, in [0, 0.02]. A point moved by
-    /// this much turns the linkage edges next to it, and with them the normals there: at the default, a five-thousandth,
-    /// by less than a picture shows. More makes a mesh that survives 32-bit coordinates.
-    pub snap: f64,
-    /// How the surface is put in.
-    pub surface: Surface,
-    /// Where the stages draw what they do.
-    pub sketch: Sketch,
-}
-
-/// How the surface is put in.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Surface {
-    /// Swept as [`Surface::Stitch`]; where that fails, as [`Surface::Field`].
-    #[default]
-    Auto,
-    /// Swept, and sewn between exact cuts along the linkages.
-    Stitch,
-    /// The mesh's own vertices are moved onto it; connectivity is kept.
-    Keep(keep::Params),
-    /// As a field of balls around both sides, which cannot fold; an arc in profile.
-    Field,
-}
-
-/// What to do where a ball of the full radius does not fit, or its sweep would fold.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Overlap {
-    /// Refuse, naming the place and a radius that works.
-    Error,
-    /// Use a smaller ball there, fading into the full one, and say so.
-    #[default]
-    Shrink,
-    /// Let the ball's envelope trim itself: where a sweep of the full ball would fold, the blend is the outside of all
-    /// places the full ball can take, as a field gives it. Refused where a field cannot serve.
-    Trim,
-}
-
-impl Params {
-    /// Whether any cross-section is of a kind.
-    pub(crate) fn uses(&self, kind: &Profile) -> bool {
-        self.profile == *kind || self.profile_at.iter().any(|k| k.1 == *kind)
-    }
-
-    /// An arc of radius `radius`, made smaller where it does not fit.
-    pub fn new(radius: f64) -> Self {
-        Self {
-            radius,
-            radii: Radii::default(),
-            profile: Profile::Arc,
-            profile_at: Vec::new(),
-            reach: None,
-            overlap: Overlap::default(),
-            solver: Solver::Contact,
-            alpha: 1.75,
-            bridge: 3.0,
-            tolerance: 0.005,
-            snap: 2e-4,
-            surface: Surface::default(),
-            sketch: Sketch::default(),
-        }
-    }
-}
 
 /// A blended mesh and what is to be said of it.
 #[derive(Clone, Debug)]
@@ -186,50 +102,25 @@ pub struct Blended {
     pub full_share: f64,
 }
 
-/// Why a blend is impossible.
-#[derive(Clone, Debug, thiserror::Error)]
-pub enum Error {
-    /// There is nothing to blend.
-    #[error("no blend curve given; lower the dihedral angle, or name a curve")]
-    NoCurves,
-    /// A field cannot do what is asked for.
-    #[error("a field blends closed curves with an arc; {0}")]
-    NotByField(&'static str),
-    /// The radius does not fit.
-    #[error(
-        "{what} at {at} with radius {radius}; {}",
-        .workable.map_or("no smaller radius tried worked either".to_string(), |r| format!("a radius of {r} works"))
-    )]
-    DoesNotFit {
-        /// What went wrong there.
-        what: &'static str,
-        /// Where, in model units.
-        at: DVec3,
-        /// The radius asked for.
-        radius: f64,
-        /// The largest of the smaller radii tried that works everywhere.
-        workable: Option<f64>,
-    },
-    /// The ball could not be rolled for a reason that no smaller radius mends.
-    #[error(transparent)]
-    Spine(#[from] spine::Error),
-    /// A corner of a blend with two radii.
-    #[error(
-        "three or more curves meet at {0}, where a blend with two radii has no corner; blend the curves in several calls, or with one radius"
-    )]
-    TwoRadiiMeet(DVec3),
-    /// Vertices cannot be slid onto the surface.
-    #[error(transparent)]
-    Keep(#[from] keep::Refusal),
-    /// The linkages could not be cut into the mesh.
-    #[error(transparent)]
-    Embed(#[from] tri_intersect::EmbedError),
-    /// A stage made a mesh that is not a manifold; nothing is returned.
-    #[error("the blend failed its own check: {0}")]
-    Invalid(#[from] NotManifold),
-    /// See [`Watch`].
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
+impl Blended {
+    /// A mesh of whose blend nothing has been told yet.
+    fn new(mesh: TriMesh, origins: Origins, first_blend_face: FaceId) -> Self {
+        Self {
+            mesh,
+            origins,
+            first_blend_face,
+            strips: 0,
+            fields: 0,
+            corners: 0,
+            residual: 0.0,
+            bridged: 0,
+            shrunk: vec![],
+            fallbacks: vec![],
+            run_outs: vec![],
+            levels: 0,
+            full_share: 1.0,
+        }
+    }
 }
 
 /// Blends `curves` of `mesh`. Vertices outside the blend keep their bits and their order.
@@ -385,60 +276,74 @@ fn assemble(
         }
     }
     let opened = cut_linkages(mesh, network, &layout, params.snap, params.radius, watch)?;
+    let mut new_points = vec![];
+    let strips = sweep_all(&ends, &layout, &opened, &params.sketch, &mut new_points)?;
+    let patches = fill_corners(&layout, &opened, &strips, &params.sketch, &mut new_points)?;
+    let cut = Connected::new(&opened.embedded.mesh).map_err(Trouble::not_manifold("the cut mesh is not a manifold"))?;
+    let removed = between(mesh, &cut, &opened, curves)?;
+    let count = strips.iter().flatten().count();
+    let pieces: Vec<Piece> = strips.into_iter().flatten().map(|s| s.piece).chain(patches).collect();
+    let sewn = sew(&opened, &removed, &pieces);
+    check(&sewn, watch)?;
+    Ok(Blended {
+        strips: count,
+        corners: layout.corners.len(),
+        residual: rails.iter().flatten().map(|r| r.residual).fold(0.0, f64::max) / params.radius,
+        bridged: rails.iter().flatten().map(|r| r.bridged).sum(),
+        run_outs: network.run_outs().map(|v| mesh.position(v)).collect(),
+        ..Blended::new(sewn.mesh, sewn.origins, sewn.first_new_face)
+    })
+}
+
+/// The strip of each curve that has a stretch of its own; their new vertices are added to `new_points`.
+fn sweep_all(
+    ends: &Ends<'_>,
+    layout: &Layout,
+    opened: &Opened,
+    sketch: &Sketch,
+    new_points: &mut Vec<DVec3>,
+) -> Result<Vec<Option<Strip>>, Trouble> {
     let cut = &opened.embedded.mesh;
-    let (mut strips, mut new_points) = (Vec::with_capacity(rails.len()), Vec::new());
-    let first_new = cut.vertex_count() as u32;
-    let mut folds = Vec::new();
+    let mut strips = Vec::with_capacity(layout.stretches.len());
+    let mut folds = vec![];
     for (i, stretch) in layout.stretches.iter().enumerate() {
-        let first = first_new + new_points.len() as u32;
+        let first = (cut.vertex_count() + new_points.len()) as u32;
         let sweep_along = |stretch| {
             let (linkages, stops) = (&opened.linkages[i], &opened.stops[i]);
-            sweep(stretch, linkages, stops, &profiles[i], fineness, first, |v| cut.position(v))
+            sweep(stretch, linkages, stops, &ends.profiles[i], ends.fineness, first, |v| cut.position(v))
         };
         let strip = stretch.as_ref().map(sweep_along);
         if let Some(strip) = &strip {
             new_points.extend_from_slice(&strip.piece.points);
-            params.sketch.page(mesh, &curves[i]).draw("strip", || piece_of(&strip.piece, cut, &new_points));
+            sketch.page(ends.mesh, &ends.curves[i]).draw("strip", || piece_of(&strip.piece, cut, new_points));
             folds.extend_from_slice(&strip.folds);
         }
         strips.push(strip);
     }
-    if !folds.is_empty() {
-        return Err(Trouble::at("the swept surface folds", folds));
-    }
+    if folds.is_empty() { Ok(strips) } else { Err(Trouble::at("the swept surface folds", folds)) }
+}
+
+/// The patch of each corner, between the strips' ends; their new vertices are added to `new_points`.
+fn fill_corners(
+    layout: &Layout,
+    opened: &Opened,
+    strips: &[Option<Strip>],
+    sketch: &Sketch,
+    new_points: &mut Vec<DVec3>,
+) -> Result<Vec<Piece>, Trouble> {
+    let cut = &opened.embedded.mesh;
+    let first_new = cut.vertex_count();
     let mut patches = Vec::with_capacity(layout.corners.len());
     for (corner, joints) in layout.corners.iter().zip(&opened.joints) {
         let position =
-            |v: VertexId| if v.0 < first_new { cut.position(v) } else { new_points[(v.0 - first_new) as usize] };
-        let patch = fill(corner, joints, &layout.stretches, &strips, first_new + new_points.len() as u32, position)?;
+            |v: VertexId| if v.index() < first_new { cut.position(v) } else { new_points[v.index() - first_new] };
+        let first = (first_new + new_points.len()) as u32;
+        let patch = fill(corner, joints, &layout.stretches, strips, first, position)?;
         new_points.extend_from_slice(&patch.points);
-        params.sketch.draw(&format!("corner-{}", patches.len()), || piece_of(&patch, cut, &new_points));
+        sketch.draw(&format!("corner-{}", patches.len()), || piece_of(&patch, cut, new_points));
         patches.push(patch);
     }
-    let connected = Connected::new(cut)
-        .map_err(|e| Trouble::at("the cut mesh is not a manifold", e.place.into_iter().collect()))?;
-    let removed = between(mesh, &connected, &opened, curves)?;
-    let strips: Vec<_> = strips.into_iter().flatten().collect();
-    let count = strips.len();
-    let pieces: Vec<_> = strips.into_iter().map(|s| s.piece).chain(patches).collect();
-    let sewn = sew(&opened, &removed, &pieces);
-    check(&sewn, watch)?;
-    let residual = rails.iter().flatten().map(|r| r.residual).fold(0.0, f64::max) / params.radius;
-    Ok(Blended {
-        mesh: sewn.mesh,
-        origins: sewn.origins,
-        first_blend_face: sewn.first_new_face,
-        strips: count,
-        fields: 0,
-        corners: layout.corners.len(),
-        residual,
-        bridged: rails.iter().flatten().map(|r| r.bridged).sum(),
-        shrunk: Vec::new(),
-        fallbacks: Vec::new(),
-        run_outs: network.run_outs().map(|v| mesh.position(v)).collect(),
-        levels: 0,
-        full_share: 1.0,
-    })
+    Ok(patches)
 }
 
 /// Which rails do not run along an earlier one: neighbouring closed curves whose balls roll the same way are swallowed by
@@ -456,16 +361,14 @@ fn distinct(rails: &[Option<Rail>], step: f64) -> Vec<bool> {
 
 /// The result must be a manifold, and the blend must not meet itself or anything else.
 fn check(sewn: &sew::Sewn, watch: &Watch) -> Result<(), Trouble> {
-    if let Err(e) = Connected::new(&sewn.mesh) {
-        return Err(Trouble::at("the blend pinches", e.place.into_iter().collect()));
-    }
+    Connected::new(&sewn.mesh).map_err(Trouble::not_manifold("the blend pinches"))?;
     let new: Vec<FaceId> = (sewn.first_new_face.0..sewn.mesh.face_count() as u32).map(FaceId).collect();
     let hits = tri_intersect::self_intersections_among(&sewn.mesh, &new, watch)
         .map_err(|_| Trouble::at("the blend cannot be checked", vec![]))?;
     if hits.is_empty() {
         return Ok(());
     }
-    let middle = |f: FaceId| sewn.mesh.triangle(f).iter().sum::<DVec3>() / 3.0;
+    let middle = |f: FaceId| centroid(sewn.mesh.triangle(f));
     let first_new = sewn.first_new_face;
     let places = hits.iter().flatten().filter(|&&f| f >= first_new).map(|&f| middle(f)).collect();
     Err(Trouble::at("the blend meets itself or the mesh", places))

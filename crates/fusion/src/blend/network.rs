@@ -173,7 +173,7 @@ fn onwards(mesh: &Connected<TriMesh>, ring: &[HalfedgeId], reach: f64) -> Kind {
 }
 
 fn area_vector(mesh: &Connected<TriMesh>, face: FaceId) -> DVec3 {
-    let [a, b, c] = mesh.corners(face).map(|v| mesh.position(v));
+    let [a, b, c] = mesh.triangle(face);
     (b - a).cross(c - a)
 }
 

@@ -19,7 +19,7 @@ pub(super) fn step_length(mesh: &Connected<TriMesh>, curves: &[BlendCurve], para
         .iter()
         .flat_map(|c| &c.halfedges)
         .flat_map(|&h| mesh.ring(mesh.tail(h)))
-        .map(|h| mesh.position(mesh.tail(h)).distance(mesh.position(mesh.head(h))))
+        .map(|h| mesh.edge_length(h))
         .collect();
     edges.sort_by(f64::total_cmp);
     edges.get(edges.len() * 3 / 4).map_or(widest, |&e| (1.2 * e).max(0.5 * widest).min(widest))

@@ -25,7 +25,7 @@ pub(crate) fn between(
     let walls = opened.loops.iter().flat_map(|c| c.windows(2).map(|w| [w[0], w[1]]));
     let mut seeds = Vec::new();
     for curve in curves {
-        let whole = curve.halfedges.iter().find_map(|&h| halfedge(cut, mesh.tail(h), mesh.head(h)));
+        let whole = curve.halfedges.iter().find_map(|&h| cut.halfedge(mesh.tail(h), mesh.head(h)));
         let Some(h) = whole.or_else(|| longest_piece(mesh, cut, &opened.embedded.origins, curve)) else {
             let at = curve.halfedges.first().map_or(DVec3::ZERO, |&h| mesh.position(mesh.tail(h)));
             return Err(Trouble::at("a linkage crosses the blend curve", vec![at]));
@@ -36,7 +36,7 @@ pub(crate) fn between(
     let mut leaks = Vec::new();
     for w in opened.loops.iter().flat_map(|c| c.windows(2)) {
         // Every loop has what stays on its left.
-        let gone = |a: VertexId, b: VertexId| halfedge(cut, a, b).map(|h| removed[h.face()]);
+        let gone = |a: VertexId, b: VertexId| cut.halfedge(a, b).map(|h| removed[h.face()]);
         if gone(w[0], w[1]) != Some(false) || gone(w[1], w[0]) != Some(true) {
             leaks.push(cut.position(w[0]));
         }
@@ -61,11 +61,7 @@ fn longest_piece(
     });
     let length = |[a, b]: &[VertexId; 2]| cut.position(*a).distance(cut.position(*b));
     let [a, b] = pieces.max_by(|a, b| length(a).total_cmp(&length(b)))?;
-    halfedge(cut, a, b)
-}
-
-fn halfedge<M: Adjacency>(mesh: &M, a: VertexId, b: VertexId) -> Option<HalfedgeId> {
-    mesh.ring(a).find(|&h| mesh.head(h) == b)
+    cut.halfedge(a, b)
 }
 
 /// The sewn mesh.

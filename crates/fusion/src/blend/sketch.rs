@@ -30,17 +30,6 @@ impl Drawing {
         }
     }
 
-    /// Several surfaces as one mesh.
-    pub(super) fn together<'a>(meshes: impl Iterator<Item = &'a TriMesh>) -> Self {
-        let mut all = TriMesh::default();
-        for mesh in meshes {
-            let first = all.positions.len() as u32;
-            all.positions.extend_from_slice(&mesh.positions);
-            all.faces.extend(mesh.faces.iter().map(|f| f.map(|v| VertexId(first + v.0))));
-        }
-        Self::Mesh(all)
-    }
-
     fn line(points: impl IntoIterator<Item = DVec3>, closed: bool) -> Self {
         Self::Lines(vec![(points.into_iter().collect(), closed)])
     }
@@ -75,7 +64,7 @@ impl Book {
     /// A curve's number; the next free one if it is met for the first time.
     fn number(&mut self, mesh: &Connected<TriMesh>, curve: &BlendCurve) -> usize {
         let Some(&first) = curve.halfedges.first() else { return 0 };
-        let key = [mesh.tail(first), mesh.head(first)].map(|v| mesh.position(v));
+        let key = mesh.ends(first);
         self.curves.iter().position(|k| *k == key).unwrap_or_else(|| {
             self.curves.push(key);
             self.curves.len() - 1

@@ -4,7 +4,7 @@ use super::linkage::Linkage;
 use super::profiles::Profiles;
 use super::stretch::{Ending, Stretch};
 use glam::DVec3;
-use mesh_core::VertexId;
+use mesh_core::{VertexId, centroid};
 use profile_nurbs::Section;
 use spine::{Convexity, Sample};
 
@@ -102,7 +102,7 @@ pub(crate) fn sweep(
         for face in &strip.piece.faces[before..] {
             let corners = face.map(&cell.at);
             if !front.shows(corners) {
-                strip.folds.push(corners.iter().sum::<DVec3>() / 3.0);
+                strip.folds.push(centroid(corners));
             }
         }
     }

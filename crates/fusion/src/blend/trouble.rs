@@ -2,7 +2,7 @@
 
 use super::Error;
 use glam::DVec3;
-use mesh_core::Cancelled;
+use mesh_core::{Cancelled, NotManifold};
 use tri_intersect::EmbedError;
 
 /// A stage's refusal.
@@ -45,6 +45,11 @@ impl Trouble {
 
     pub fn at(what: &'static str, places: Vec<DVec3>) -> Self {
         Self::Places { what, places }
+    }
+
+    /// What a mesh that is no manifold means.
+    pub fn not_manifold(what: &'static str) -> impl FnOnce(NotManifold) -> Self {
+        move |refusal| Self::at(what, refusal.place.into_iter().collect())
     }
 }
 

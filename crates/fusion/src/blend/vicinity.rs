@@ -44,7 +44,7 @@ pub(super) fn vicinity<'a>(
     let boxes = boxes_along(whole, curves, MARGIN * params.radius);
     let around = boxes.iter().fold(Bounds::EMPTY, |a, b| a.union(*b));
     let near = |f: usize| {
-        let own = Bounds::of(whole.mesh().triangle(FaceId::from(f)));
+        let own = Bounds::of(whole.triangle(FaceId::from(f)));
         around.overlaps(&own) && boxes.iter().any(|b| b.overlaps(&own))
     };
     let mut inside: Vec<bool> = (0..whole.face_count()).into_par_iter().map(near).collect();
@@ -78,7 +78,7 @@ pub(super) fn vicinity<'a>(
 /// Boxes around stretches of the curves, wider than those by `margin`.
 fn boxes_along(mesh: &Connected<TriMesh>, curves: &[BlendCurve], margin: f64) -> Vec<Bounds> {
     let halfedges: Vec<HalfedgeId> = curves.iter().flat_map(|c| c.halfedges.iter().copied()).collect();
-    let ends = |h: &HalfedgeId| [mesh.tail(*h), mesh.head(*h)].map(|v| mesh.position(v));
+    let ends = |h: &HalfedgeId| mesh.ends(*h);
     let stretch = halfedges.len().div_ceil(BOXES).max(1);
     halfedges.chunks(stretch).map(|c| Bounds::of(c.iter().flat_map(ends)).inflated(margin)).collect()
 }
@@ -90,7 +90,7 @@ fn ids_of(inside: &[bool]) -> Vec<FaceId> {
 /// Takes in all faces around vertices at which the part would fall into several fans. Returns whether there were any.
 fn widen_at_pinches(mesh: &Connected<TriMesh>, faces: &[FaceId], inside: &mut [bool]) -> bool {
     let opens = |inside: &[bool], h: HalfedgeId| mesh.twin(h).is_none_or(|t| !inside[t.face().index()]);
-    let rim = faces.iter().flat_map(|&f| (0..3).map(move |k| HalfedgeId::from(3 * f.index() + k)));
+    let rim = faces.iter().flat_map(|f| f.halfedges());
     let pinched: Vec<VertexId> = rim
         .filter(|&h| opens(inside, h))
         .map(|h| mesh.tail(h))
@@ -107,8 +107,8 @@ impl Vicinity<'_> {
     /// the part shares with the rest is untouched.
     pub fn holds(&self, blended: &Blended) -> bool {
         let mut unshared = vec![true; self.mesh.vertex_count()];
-        for h in (0..3 * self.mesh.face_count()).map(HalfedgeId::from).filter(|&h| self.mesh.twin(h).is_none()) {
-            let outer = HalfedgeId::from(3 * self.faces[h.face().index()].index() + h.corner());
+        for h in self.mesh.halfedge_ids().filter(|&h| self.mesh.twin(h).is_none()) {
+            let outer = HalfedgeId::new(self.faces[h.face().index()], h.corner());
             if self.whole.twin(outer).is_some() {
                 unshared[self.mesh.tail(h).index()] = false;
                 unshared[self.mesh.head(h).index()] = false;
@@ -130,37 +130,14 @@ impl Vicinity<'_> {
     /// pieces and new ones as in `blended`.
     pub fn put_back(&self, blended: Blended) -> Blended {
         let part = &blended.origins;
-        let mut stays = vec![true; self.whole.vertex_count()];
-        self.vertices.iter().for_each(|v| stays[v.index()] = false);
-        let inner = || blended.mesh.vertex_ids();
-        let whole_vertex = |v: VertexId| match part.vertices[v] {
-            VertexOrigin::Input { vertex, .. } => Some(self.vertices[vertex.index()]),
-            _ => None,
-        };
-        inner().filter_map(whole_vertex).for_each(|v| stays[v.index()] = true);
-        let mut now = vec![NONE; stays.len()];
-        let staying: Vec<VertexId> = self.whole.vertex_ids().filter(|v| stays[v.index()]).collect();
-        staying.iter().enumerate().for_each(|(i, v)| now[v.index()] = VertexId::from(i));
-        let added: Vec<VertexId> = inner().filter(|&v| whole_vertex(v).is_none()).collect();
-        let mut renamed: Vec<VertexId> = inner().map(|v| whole_vertex(v).map_or(v, |w| now[w.index()])).collect();
-        (staying.len()..).zip(&added).for_each(|(i, v)| renamed[v.index()] = VertexId::from(i));
-
-        let mut keeps = vec![true; self.whole.face_count()];
-        self.faces.iter().for_each(|f| keeps[f.index()] = false);
-        let is_whole = |f: &FaceId| matches!(part.faces[*f], FaceOrigin::Input { .. });
-        for f in blended.mesh.face_ids() {
-            if let FaceOrigin::Input { face, .. } = part.faces[f] {
-                keeps[self.faces[face.index()].index()] = true;
-            }
-        }
-        let kept = ids_of(&keeps);
-        let changed: Vec<FaceId> = blended.mesh.face_ids().filter(|f| !is_whole(f)).collect();
+        let Numbering { staying, added, of_whole, of_part } = self.number_vertices(&blended);
+        let (kept, changed) = self.sort_faces(&blended);
 
         let position = |v: &VertexId| self.whole.position(*v);
         let positions: Vec<DVec3> =
             staying.par_iter().map(position).chain(added.par_iter().map(|&v| blended.mesh.position(v))).collect();
-        let old = kept.par_iter().map(|&f| self.whole.corners(f).map(|v| now[v.index()]));
-        let new = changed.par_iter().map(|&f| blended.mesh.corners(f).map(|v| renamed[v.index()]));
+        let old = kept.par_iter().map(|&f| self.whole.corners(f).map(|v| of_whole[v.index()]));
+        let new = changed.par_iter().map(|&f| blended.mesh.corners(f).map(|v| of_part[v.index()]));
         let same = staying.par_iter().map(|&vertex| VertexOrigin::Input { part: 0, vertex });
         let vertices: Vec<_> = same.chain(added.par_iter().map(|&v| self.vertex(part.vertices[v]))).collect();
         let same = kept.par_iter().map(|&face| FaceOrigin::Input { part: 0, face });
@@ -172,6 +149,39 @@ impl Vicinity<'_> {
             origins: Origins { vertices: vertices.into(), faces: faces.into() },
             ..blended
         }
+    }
+
+    /// Which vertices the result has, and their numbers there.
+    fn number_vertices(&self, blended: &Blended) -> Numbering {
+        let whole_vertex = |v: VertexId| match blended.origins.vertices[v] {
+            VertexOrigin::Input { vertex, .. } => Some(self.vertices[vertex.index()]),
+            _ => None,
+        };
+        let inner = || blended.mesh.vertex_ids();
+        let mut stays = vec![true; self.whole.vertex_count()];
+        self.vertices.iter().for_each(|v| stays[v.index()] = false);
+        inner().filter_map(whole_vertex).for_each(|v| stays[v.index()] = true);
+        let staying: Vec<VertexId> = self.whole.vertex_ids().filter(|v| stays[v.index()]).collect();
+        let mut of_whole = vec![NONE; stays.len()];
+        staying.iter().enumerate().for_each(|(i, v)| of_whole[v.index()] = VertexId::from(i));
+        let added: Vec<VertexId> = inner().filter(|&v| whole_vertex(v).is_none()).collect();
+        let mut of_part: Vec<VertexId> = inner().map(|v| whole_vertex(v).map_or(v, |w| of_whole[w.index()])).collect();
+        (staying.len()..).zip(&added).for_each(|(i, v)| of_part[v.index()] = VertexId::from(i));
+        Numbering { staying, added, of_whole, of_part }
+    }
+
+    /// The faces of the whole that stay as they are, and those of the blended part that take the place of the others.
+    fn sort_faces(&self, blended: &Blended) -> (Vec<FaceId>, Vec<FaceId>) {
+        let mut keeps = vec![true; self.whole.face_count()];
+        self.faces.iter().for_each(|f| keeps[f.index()] = false);
+        let mut changed = vec![];
+        for f in blended.mesh.face_ids() {
+            match blended.origins.faces[f] {
+                FaceOrigin::Input { face, .. } => keeps[self.faces[face.index()].index()] = true,
+                _ => changed.push(f),
+            }
+        }
+        (ids_of(&keeps), changed)
     }
 
     /// An origin in the part as one in the whole.
@@ -193,6 +203,18 @@ impl Vicinity<'_> {
             other => other,
         }
     }
+}
+
+/// The vertices of a whole mesh with the part's blend: first those of the whole that stay, then those that were added.
+struct Numbering {
+    /// In the whole mesh, in order.
+    staying: Vec<VertexId>,
+    /// In the blended part, in order.
+    added: Vec<VertexId>,
+    /// What each vertex of the whole is now.
+    of_whole: Vec<VertexId>,
+    /// What each vertex of the blended part is now.
+    of_part: Vec<VertexId>,
 }
 
 #[cfg(test)]

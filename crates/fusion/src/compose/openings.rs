@@ -114,7 +114,7 @@ fn check_orientation(part: usize, mesh: &Connected<TriMesh>) -> Result<(), Error
     const FLAT: f64 = 0.2;
     let pieces = components(mesh);
     let mut volumes = vec![(0.0, 0.0, DVec3::ZERO); pieces.len()];
-    let corners = |f: usize| mesh.mesh().triangle(FaceId::from(f));
+    let corners = |f: usize| mesh.triangle(FaceId::from(f));
     let center = bounds(mesh).center();
     for (f, &label) in pieces.labels.as_slice().iter().enumerate() {
         let [a, b, c] = corners(f).map(|p| p - center);

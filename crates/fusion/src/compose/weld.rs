@@ -30,10 +30,8 @@ pub(super) fn weld(
     let mut origins = Origins::default();
     let mut firsts = vec![];
     for (part, one) in (0..).zip(parts.iter().map(Connected::mesh)) {
-        let first = mesh.positions.len() as u32;
-        firsts.push(first);
-        mesh.positions.extend(&one.positions);
-        mesh.faces.extend(one.faces.iter().map(|f| f.map(|v| VertexId(v.0 + first))));
+        firsts.push(mesh.positions.len() as u32);
+        mesh.append(one);
         let own = own.map_or_else(
             || Origins::identity(part, one.positions.len(), one.faces.len()),
             |own| own[part as usize].clone(),

@@ -54,7 +54,7 @@ pub(super) fn kept_side(mesh: &Connected<TriMesh>, chain: &[VertexId], keep: Kee
     }
     let area = |side: &FaceMap<bool>| -> f64 {
         let faces = mesh.face_ids().filter(|&f| side[f]);
-        faces.map(|f| area_vector(mesh.mesh().triangle(f)).length()).sum()
+        faces.map(|f| area_vector(mesh.triangle(f)).length()).sum()
     };
     let left = match keep {
         Keep::Larger => area(&sides[0]) >= area(&sides[1]),

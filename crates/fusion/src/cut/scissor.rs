@@ -201,11 +201,11 @@ impl Scissors<'_> {
         for &stop in path {
             mark(&mut seen, self.mesh, stop);
         }
-        let area = |f: FaceId| area_vector(self.mesh.mesh().triangle(f)).length();
+        let area = |f: FaceId| area_vector(self.mesh.triangle(f)).length();
         let border: Vec<FaceId> = self.mesh.face_ids().filter(|f| seen[f.index()]).collect();
         let (mut all, mut largest) = (border.iter().map(|&f| area(f)).sum::<f64>(), 0.0f64);
         let mut stack = vec![];
-        for h in border.iter().flat_map(|&f| (0..3).map(move |k| HalfedgeId::new(f, k))) {
+        for h in border.iter().flat_map(|f| f.halfedges()) {
             let mut side = 0.0;
             stack.extend(self.mesh.twin(h).map(HalfedgeId::face));
             while let Some(f) = stack.pop() {
@@ -213,7 +213,7 @@ impl Scissors<'_> {
                     continue;
                 }
                 side += area(f);
-                stack.extend((0..3).filter_map(|k| self.mesh.twin(HalfedgeId::new(f, k))).map(HalfedgeId::face));
+                stack.extend(self.mesh.neighbours(f));
             }
             all += side;
             largest = largest.max(side);
@@ -277,7 +277,7 @@ impl Scissors<'_> {
         let mut front = BinaryHeap::new();
         let (from, to) = (self.place(self.stops[leg]), self.place(self.stops[next]));
         let (mut arrival, mut least) = (u32::MAX, f64::INFINITY);
-        for h in (0..3).map(|k| HalfedgeId::new(start, k)) {
+        for h in start.halfedges() {
             for n in (0..count).map(|k| node(h, k)) {
                 let price = step(from, self.place(stop(n))) * aversion(h);
                 best[n as usize] = price;

@@ -1,12 +1,12 @@
 //! What TOML cannot check: names, ranges, order.
 
+use super::joins::split_loop;
 use super::keys::check_keys;
-use super::rims::split_loop;
-use super::tables::{Creases, Depth, Part, PartCut, Plane, Silhouette};
+use super::part_tables::{Part, PartCut, Plane};
 use super::values::{Length, Pose};
 use super::{Error, Recipe, Step};
+use crate::cluster;
 use crate::cut::{Cut, Keep, PathCut, PlaneCut};
-use crate::{cluster, compose};
 use glam::DVec3;
 use mesh_io::Format;
 use serde::Deserialize;
@@ -181,98 +181,6 @@ impl Recipe {
         }
     }
 
-    /// How openings are joined; which ones is left open.
-    pub(super) fn composing(&self, i: usize, diagonal: f64, format: Format) -> Result<compose::Params, Error> {
-        let c = &self.compose[i];
-        let mut params = compose::Params::new(format);
-        if let Some(text) = &c.method {
-            params.method = match text.get_ref().as_str() {
-                "implicit" => compose::Method::Implicit,
-                "montage" => compose::Method::Montage,
-                _ => return Err(self.error(text.span(), "a method is implicit or montage")),
-            };
-        }
-        if let Some(text) = &c.kernel {
-            params.kernel = match text.get_ref().as_str() {
-                "biharmonic" => compose::Kernel::Biharmonic,
-                "triharmonic" => compose::Kernel::Triharmonic,
-                "hermite" => compose::Kernel::Hermite,
-                _ => return Err(self.error(text.span(), "a kernel is triharmonic, biharmonic or hermite")),
-            };
-        }
-        if let Some(rings) = &c.rings {
-            if *rings.get_ref() > 16 {
-                return Err(self.error(rings.span(), "must be a number from 0 to 16"));
-            }
-            params.rings = Some(usize::from(*rings.get_ref()));
-        }
-        if let Some(cell) = &c.cell {
-            params.cell = self.within(cell, f64::MIN_POSITIVE, 1e6)?;
-        }
-        let length = |text: &Option<Spanned<Length>>| {
-            let resolved = |l: &Spanned<Length>| {
-                let message = "a length is a number above 0, or a share of the diagonal such as \"2%\"";
-                l.get_ref().resolve(diagonal).ok_or_else(|| self.error(l.span(), message))
-            };
-            text.as_ref().map(resolved).transpose()
-        };
-        params.edge_length = length(&c.edge_length)?;
-        params.adjust = length(&c.adjust)?;
-        if let Some(space) = &c.space {
-            params.space = self.within(space, f64::MIN_POSITIVE, 1e6)?;
-        }
-        if let Some(creases) = &c.crease {
-            let all = match creases.get_ref() {
-                Creases::All(angle) => vec![*angle],
-                Creases::Each(each) => each.values().copied().collect(),
-            };
-            if !all.iter().all(|a| (-90.0..=90.0).contains(a)) {
-                return Err(self.error(creases.span(), "a crease is an angle from -90 to 90 degrees"));
-            }
-            if let Creases::All(angle) = creases.get_ref() {
-                params.crease = *angle;
-            }
-        }
-        params.silhouettes = c.silhouette.iter().map(|s| self.silhouette(s)).collect::<Result<_, _>>()?;
-        Ok(params)
-    }
-
-    /// A silhouette that a joint shall have.
-    fn silhouette(&self, s: &Silhouette) -> Result<compose::Silhouette, Error> {
-        let finite = |all: &[[f64; 3]]| all.iter().flatten().all(|x| x.is_finite());
-        let view = *s.view.get_ref();
-        if !finite(&[view]) || view == [0.0; 3] {
-            return Err(self.error(s.view.span(), "a view is a direction other than 0, 0, 0"));
-        }
-        let (strokes, span) = match (&s.stroke, &s.strokes) {
-            (Some(one), None) => (vec![one.get_ref().clone()], one.span()),
-            (None, Some(all)) => (all.get_ref().clone(), all.span()),
-            _ => return Err(self.error(s.view.span(), "a silhouette needs either a stroke or strokes")),
-        };
-        if strokes.iter().map(Vec::len).sum::<usize>() < 2 || !strokes.iter().all(|s| finite(s)) {
-            return Err(self.error(span, "a stroke needs two points or more, in finite numbers"));
-        }
-        let control = s.control.as_ref().map(|c| {
-            let fixed = finite(c.get_ref()).then(|| c.get_ref().map(DVec3::from));
-            fixed.ok_or_else(|| self.error(c.span(), "control points are two points in finite numbers"))
-        });
-        let depth = s.depth.as_ref().map_or(Ok([0.0; 2]), |d| {
-            let moves = match *d.get_ref() {
-                Depth::One(x) => [x; 2],
-                Depth::Two(both) => both,
-            };
-            let fixed = moves.iter().all(|x| x.is_finite()).then_some(moves);
-            fixed.ok_or_else(|| self.error(d.span(), "moves along the view are finite numbers"))
-        })?;
-        Ok(compose::Silhouette {
-            view: view.into(),
-            strokes: strokes.into_iter().map(|s| s.into_iter().map(DVec3::from).collect()).collect(),
-            hole: s.hole,
-            control: control.transpose()?,
-            depth,
-        })
-    }
-
     /// How a polyhedron is rounded.
     pub(super) fn clustering(&self, i: usize, format: Format) -> Result<cluster::Params, Error> {
         let c = &self.cluster[i];
@@ -301,6 +209,15 @@ impl Recipe {
         let spec = |e: &cluster::Entry| e.spec().map_err(|e| self.error(0..0, e.to_string()));
         params.clusters = c.clusters.as_ref().map(|all| all.iter().map(spec).collect()).transpose()?;
         Ok(params)
+    }
+
+    /// A length, if one is given; `diagonal` is what it may be a share of.
+    pub(super) fn length(&self, length: Option<&Spanned<Length>>, diagonal: f64) -> Result<Option<f64>, Error> {
+        let resolved = |l: &Spanned<Length>| {
+            let message = "a length is a number above 0, or a share of the diagonal such as \"2%\"";
+            l.get_ref().resolve(diagonal).ok_or_else(|| self.error(l.span(), message))
+        };
+        length.map(resolved).transpose()
     }
 
     pub(super) fn within(&self, value: &Spanned<f64>, least: f64, most: f64) -> Result<f64, Error> {

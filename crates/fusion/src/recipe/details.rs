@@ -11,6 +11,7 @@ use glam::DVec3;
 use mesh_core::{FaceOrigin, Faces};
 use mesh_io::Model;
 use std::ops::Range;
+use toml::Spanned;
 
 /// A table that says where: the part if it names one, and the region.
 type Place = (Option<String>, Region);
@@ -22,12 +23,7 @@ impl Recipe {
         table: &Detail,
         diagonal: f64,
     ) -> Result<(Place, Vec<Place>, detail_transfer::Params), Wrong> {
-        let length = |l: &Option<toml::Spanned<super::Length>>| match l {
-            None => Ok(None),
-            Some(l) => l.get_ref().resolve(diagonal).map(Some).ok_or_else(|| {
-                self.error(l.span(), "a length is a number above 0, or a share of the diagonal such as \"2%\"")
-            }),
-        };
+        let length = |length: &Option<Spanned<Length>>| self.length(length.as_ref(), diagonal);
         let region = |at: &DetailRegion, span: Range<usize>| -> Result<Place, Wrong> {
             let one = match (&at.near, &at.radius, &at.group, &at.origin) {
                 (Some(center), Some(radius), None, None) => {
@@ -50,20 +46,15 @@ impl Recipe {
                     .error(span, "a mode is unstructured, or structured with a curve `along` of two points or more"));
             }
         };
-        let ribbon = structured.then(|| Ribbon::along(table.along.iter().map(|&p| DVec3::from(p)).collect()));
-        let ribbon = match ribbon {
-            None => None,
-            Some(r) => Some(Ribbon {
-                source_curve: match &table.source_along[..] {
-                    [] => None,
-                    points => Some(points.iter().map(|&p| DVec3::from(p)).collect()),
-                },
-                width: length(&table.width)?,
-                spacing: length(&table.spacing)?,
-                ..r
-            }),
+        let points = |all: &[[f64; 3]]| all.iter().map(|&p| DVec3::from(p)).collect::<Vec<_>>();
+        let ribbon = if structured {
+            let source_curve = (!table.source_along.is_empty()).then(|| points(&table.source_along));
+            let (width, spacing) = (length(&table.width)?, length(&table.spacing)?);
+            Some(Ribbon { source_curve, width, spacing, ..Ribbon::along(points(&table.along)) })
+        } else {
+            None
         };
-        let fan = match table.fan.as_ref().map(toml::Spanned::get_ref) {
+        let fan = match table.fan.as_ref().map(Spanned::get_ref) {
             None => FanLength::default(),
             Some(Length::Share(name)) if name == "diagonal" => FanLength::Diagonal,
             Some(Length::Share(name)) if name == "edges" => FanLength::Edges,
@@ -74,10 +65,7 @@ impl Recipe {
             Some(("exhaustive", _)) => Search::Exhaustive,
             Some((_, span)) => return Err(self.error(span, "a search is indexed or exhaustive")),
         };
-        let intensity = match &table.intensity {
-            Some(factor) => Some(self.within(factor, -100.0, 100.0)?),
-            None => None,
-        };
+        let intensity = table.intensity.as_ref().map(|factor| self.within(factor, -100.0, 100.0)).transpose()?;
         let params = detail_transfer::Params {
             wavelength: length(&table.wavelength)?,
             fan,

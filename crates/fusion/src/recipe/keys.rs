@@ -102,8 +102,8 @@ fn below(text: &str, value: &Spanned<DeValue<'_>>, kind: &str) -> Result<(), Err
 
 #[cfg(test)]
 mod tests {
-    use super::super::tables::{self as t, ProfileAt};
-    use super::super::{Recipe, Rotation};
+    use super::super::tables::ProfileAt;
+    use super::super::{self as t, Recipe, Rotation};
     use super::*;
     use crate::{blend, cluster, compose, cut};
     use mesh_io::Format;

@@ -24,24 +24,24 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `tables.rs` | what may stand in a recipe |
+//! | `tables.rs`, `part_tables.rs` | what may stand in a recipe |
 //! | `vocabulary.rs`, `keys.rs` | what each table takes: the list; unknown keys refused and the reference written by it |
 //! | `values.rs` | vectors, lengths, poses, profiles |
 //! | `check.rs` | what TOML cannot check: names, ranges |
 //! | `rolling.rs` | how a ball is rolled |
 //! | `run.rs` | the steps, in order |
 //! | `pose.rs`, `placement.rs`, `snap.rs` | where parts stand: their own poses, primitives, openings that face each other |
-//! | `details.rs` | the steps of geometry detail |
-//! | `rims.rs` | openings by the names of the parts they came with |
+//! | `joins.rs`, `details.rs` | the joins of openings, and the steps of geometry detail |
 //! | `error.rs` | what is wrong with a recipe, by line and key |
 
 mod check;
 mod details;
 mod error;
+mod joins;
 mod keys;
+mod part_tables;
 mod placement;
 mod pose;
-mod rims;
 mod rolling;
 mod run;
 mod snap;
@@ -51,8 +51,9 @@ mod vocabulary;
 
 pub use error::Error;
 pub use keys::reference;
+pub use part_tables::{On, Part, PartCut, Plane, Primitive, Radius, Snap};
 pub use tables::{
-    BallRadius, Blend, Boolean, Cluster, Compose, Creases, Depth, Detail, DetailRegion, DetailRegions, On, Part,
-    PartCut, Plane, Primitive, Radius, RadiusAt, Recipe, Silhouette, Snap, Step,
+    BallRadius, Blend, Boolean, Cluster, Compose, Creases, Depth, Detail, DetailRegion, DetailRegions, RadiusAt,
+    Recipe, Silhouette, Step,
 };
 pub use values::{Length, Rotation};

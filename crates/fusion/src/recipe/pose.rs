@@ -1,9 +1,9 @@
 //! Where every part stands.
 
+use super::joins::split_loop;
+use super::part_tables::{On, Primitive, Radius, Snap};
 use super::placement::{Motion, Shape};
-use super::rims::split_loop;
 use super::snap::{face_to_face, opening_axis};
-use super::tables::{On, Primitive, Radius, Snap};
 use super::values::Pose;
 use super::{Error, Recipe};
 use glam::{DQuat, DVec3};

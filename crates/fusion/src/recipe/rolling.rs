@@ -1,10 +1,11 @@
 //! How a ball is rolled, in recipes: the keys that blends and booleans share.
 
 use super::tables::{BallRadius, Blend, Boolean, ProfileAt, RadiusAt};
-use super::values::{Length, profile};
+use super::values::Length;
 use super::{Error, Recipe};
 use crate::{blend, picked_from_text};
 use glam::DVec3;
+use profile_nurbs::Profile;
 use spine::{OffsetParams, Solver};
 use std::path::Path;
 use toml::Spanned;
@@ -90,7 +91,7 @@ impl Recipe {
         let mut params = blend::Params { radii, ..blend::Params::new(radius) };
         let profile = |text: &str, span: std::ops::Range<usize>| {
             let message = "a profile is arc, g2, chamfer, sharp, hermite, or conic=W with W of 0 or more";
-            profile(text).ok_or_else(|| self.error(span, message))
+            Profile::named(text).ok_or_else(|| self.error(span, message))
         };
         if let Some(text) = keys.profile {
             params.profile = profile(text.get_ref(), text.span())?;

@@ -1,10 +1,8 @@
 //! The steps of a recipe, in order.
 
-use super::rims::{self, Rims, split_loop};
-use super::tables::{Compose, Creases};
+use super::joins::Rims;
 use super::{Recipe, Step};
 use crate::cluster::cluster;
-use crate::compose::{Crease, compose};
 use crate::cut::{self, cut};
 use crate::features;
 use crate::outcome::{Outcome, Promise, finish_as};
@@ -12,6 +10,7 @@ use crate::{Counts, Error, Report, join, join::join as join_parts, round};
 use glam::DVec3;
 use mesh_core::{Bounds, Faces, Origins, Stage, TriMesh, Watch, bounds};
 use mesh_io::{Format, Model};
+use toml::Spanned;
 
 /// A part on its way.
 pub(super) struct Piece {
@@ -28,7 +27,7 @@ pub(super) struct Replay<'a> {
     pub(super) first: Vec<Model>,
     pub(super) pieces: Vec<Piece>,
     /// The loops that parts and results had when they were named.
-    rims: Vec<Rims>,
+    pub(super) rims: Vec<Rims>,
     pub(super) format: Format,
     report: Report,
     pub(super) watch: &'a Watch,
@@ -112,100 +111,15 @@ impl Replay<'_> {
                 blend: self.recipe.rolling_of_boolean(i, self.diagonal())?,
                 format: self.format,
             };
-            let names: Vec<&str> = which.iter().map(|&w| self.pieces[w].name.as_str()).collect();
-            let name = format!("boolean of {}", names.join(", "));
-            let models = self.models(&which);
-            let outcome = join_parts(&models, &params, self.watch).map_err(|e| step(&name, e))?;
-            let result = boolean.name.as_ref().map(|n| n.get_ref().clone());
-            let at = self.take_up(&which, &models, &name, outcome);
-            if let Some(result) = result {
-                self.pieces[at].name = result;
-            }
+            let at = self.step("boolean", &which, |models, watch| join_parts(models, &params, watch))?;
+            self.rename(at, boolean.name.as_ref());
         }
         Ok(())
-    }
-
-    fn composes(&mut self) -> Result<(), Error> {
-        self.name_rims(0);
-        for (i, table) in self.recipe.compose.iter().enumerate() {
-            let mut params = self.recipe.composing(i, self.diagonal(), self.format)?;
-            let mut which: Vec<usize> = (0..self.pieces.len()).collect();
-            if let Some(names) = &table.loops {
-                let mut chosen = vec![];
-                for name in names {
-                    chosen.extend(self.loops_of(name)?);
-                }
-                which = chosen.iter().map(|c| c.0).collect();
-                which.sort_unstable();
-                which.dedup();
-                let place = |w: usize| which.binary_search(&w).unwrap_or(0);
-                params.loops = Some(chosen.iter().map(|&(w, l)| (place(w), l)).collect());
-            }
-            params.creases = self.creases(table, &which)?;
-            let names: Vec<&str> = which.iter().map(|&w| self.pieces[w].name.as_str()).collect();
-            let name = format!("compose of {}", names.join(", "));
-            let models = self.models(&which);
-            let outcome = compose(&models, &params, self.watch).map_err(|e| step(&name, e))?;
-            let at = self.take_up(&which, &models, &name, outcome);
-            if let Some(result) = &table.name {
-                self.pieces[at].name.clone_from(result.get_ref());
-            }
-            self.name_rims(at);
-        }
-        Ok(())
-    }
-
-    /// The creases that a join names one by one, its pieces being those in `which`.
-    fn creases(&self, table: &Compose, which: &[usize]) -> Result<Vec<Crease>, Error> {
-        let Some(Creases::Each(each)) = table.crease.as_ref().map(toml::Spanned::get_ref) else { return Ok(vec![]) };
-        let span = table.crease.as_ref().map_or(0..0, toml::Spanned::span);
-        let mut all = vec![];
-        for (name, &angle) in each {
-            for (w, index) in self.loops_of(&toml::Spanned::new(span.clone(), name.clone()))? {
-                all.extend(which.binary_search(&w).ok().map(|part| Crease { part, index, angle }));
-            }
-        }
-        Ok(all)
-    }
-
-    /// Numbers the loops of pieces from `first` on that go by a new name.
-    fn name_rims(&mut self, first: usize) {
-        for piece in &self.pieces[first..] {
-            if self.rims.iter().all(|r| r.part != piece.name) {
-                self.rims.push(Rims::of(&piece.name, &piece.mesh, &piece.origins));
-            }
-        }
-    }
-
-    /// The loops that a recipe names, as piece and loop by their present numbers.
-    fn loops_of(&self, text: &toml::Spanned<String>) -> Result<Vec<(usize, usize)>, Error> {
-        let wrong = |message: String| -> Error { self.recipe.error(text.span(), message).into() };
-        let (part, number) = split_loop(text.get_ref()).unwrap_or_default();
-        let Some(rims) = self.rims.iter().find(|r| r.part == part) else {
-            return Err(wrong(format!("there is no part `{part}` at this point")));
-        };
-        let marks = match number {
-            None => &rims.marks[..],
-            Some(n) => rims.marks.get(n..=n).ok_or_else(|| {
-                wrong(format!("part `{part}` has {} loops, so there is no loop {n}", rims.marks.len()))
-            })?,
-        };
-        let present = marks.iter().filter_map(|mark| {
-            self.pieces.iter().enumerate().find_map(|(w, p)| Some((w, rims::find(&p.mesh, &p.origins, mark)?)))
-        });
-        let present: Vec<_> = present.collect();
-        if present.is_empty() || number.is_some() && present.len() != marks.len() {
-            return Err(wrong(format!("`{}` is not open at this point", text.get_ref())));
-        }
-        Ok(present)
     }
 
     fn blends(&mut self) -> Result<(), Error> {
         for (i, blend) in self.recipe.blend.iter().enumerate() {
-            let at = match &blend.part {
-                Some(name) => self.find(name)?,
-                None => self.only("name the part to blend")?,
-            };
+            let at = self.named_or_only(blend.part.as_ref(), "name the part to blend")?;
             let angle = match &blend.angle {
                 Some(angle) => self.recipe.within(angle, 0.1, 179.9)?,
                 None => 40.0,
@@ -217,25 +131,16 @@ impl Replay<'_> {
                 blend: self.recipe.rolling_of_blend(i, self.diagonal())?,
                 format: self.format,
             };
-            let name = format!("blend of {}", self.pieces[at].name);
-            let models = self.models(&[at]);
-            let outcome = round::round(&models[0], &params, self.watch).map_err(|e| step(&name, e))?;
-            self.take_up(&[at], &models, &name, outcome);
+            self.step("blend", &[at], |models, watch| round::round(&models[0], &params, watch))?;
         }
         Ok(())
     }
 
     fn clusters(&mut self) -> Result<(), Error> {
         for (i, table) in self.recipe.cluster.iter().enumerate() {
-            let at = match &table.part {
-                Some(name) => self.find(name)?,
-                None => self.only("name the part to round")?,
-            };
+            let at = self.named_or_only(table.part.as_ref(), "name the part to round")?;
             let params = self.recipe.clustering(i, self.format)?;
-            let name = format!("clusters of {}", self.pieces[at].name);
-            let models = self.models(&[at]);
-            let made = cluster(&models[0], &params, self.watch).map_err(|e| step(&name, e))?;
-            self.take_up(&[at], &models, &name, made.outcome);
+            self.step("clusters", &[at], |models, watch| Ok(cluster(&models[0], &params, watch)?.outcome))?;
         }
         Ok(())
     }
@@ -247,8 +152,24 @@ impl Replay<'_> {
         finish_as(Promise::Manifold, &self.first[..], piece.mesh, piece.origins, self.format, self.report, self.watch)
     }
 
-    fn models(&self, which: &[usize]) -> Vec<Model> {
-        which.iter().map(|&w| Model::from(self.pieces[w].mesh.clone())).collect()
+    /// Takes one step with some pieces, and puts what it makes in their place; gives that place.
+    pub(super) fn step(
+        &mut self,
+        kind: &str,
+        which: &[usize],
+        make: impl FnOnce(&[Model], &Watch) -> Result<Outcome, Error>,
+    ) -> Result<usize, Error> {
+        let names: Vec<&str> = which.iter().map(|&w| self.pieces[w].name.as_str()).collect();
+        let name = format!("{kind} of {}", names.join(", "));
+        let models: Vec<Model> = which.iter().map(|&w| Model::from(self.pieces[w].mesh.clone())).collect();
+        let outcome = make(&models, self.watch).map_err(|e| step(&name, e))?;
+        Ok(self.take_up(which, &models, &name, outcome))
+    }
+
+    pub(super) fn rename(&mut self, piece: usize, name: Option<&Spanned<String>>) {
+        if let Some(name) = name {
+            self.pieces[piece].name.clone_from(name.get_ref());
+        }
     }
 
     /// Puts a step's result in the place of the pieces it was made of; gives its place.
@@ -280,7 +201,11 @@ impl Replay<'_> {
         gone[0]
     }
 
-    fn find(&self, name: &toml::Spanned<String>) -> Result<usize, Error> {
+    fn named_or_only(&self, name: Option<&Spanned<String>>, remedy: &str) -> Result<usize, Error> {
+        name.map_or_else(|| self.only(remedy), |name| self.find(name))
+    }
+
+    fn find(&self, name: &Spanned<String>) -> Result<usize, Error> {
         self.pieces.iter().position(|p| p.name == *name.get_ref()).ok_or_else(|| {
             let left = self.pieces.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
             let message = format!("part `{}` has gone into another by now; there are {left}", name.get_ref());

@@ -4,7 +4,6 @@ use super::placement::Motion;
 use glam::{DQuat, DVec3};
 use mesh_core::TriMesh;
 use mesh_io::Model;
-use profile_nurbs::Profile;
 use serde::Deserialize;
 
 /// A length: model units, or a share of the diagonal of the box around all parts as posed, such as `"2%"`.
@@ -95,20 +94,5 @@ impl Pose {
         }
         model.mesh = self.mesh(std::mem::take(&mut model.mesh));
         model
-    }
-}
-
-/// A profile by its name on the command line.
-pub(super) fn profile(text: &str) -> Option<Profile> {
-    match text {
-        "arc" => Some(Profile::Arc),
-        "g2" => Some(Profile::G2),
-        "chamfer" => Some(Profile::Chamfer),
-        "sharp" => Some(Profile::Sharp),
-        "hermite" => Some(Profile::Hermite),
-        _ => {
-            let weight: f64 = text.strip_prefix("conic=")?.parse().ok()?;
-            (weight.is_finite() && weight >= 0.0).then_some(Profile::Conic(weight))
-        }
     }
 }

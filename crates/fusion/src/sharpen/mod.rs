@@ -20,7 +20,7 @@ use edge::Edge;
 use glam::DVec3;
 use mesh_core::{
     Connected, FaceId, FaceOrigin, Faces, Origins, Positions, Stage, TriMesh, VertexId, VertexOrigin, Watch,
-    boundary_loops,
+    boundary_loops, centroid,
 };
 use mesh_io::{Format, Model};
 use rim::Rim;
@@ -160,7 +160,7 @@ fn sharpen_one(mesh: &Connected<TriMesh>, at: DVec3, params: &Params, watch: &Wa
     let new: Vec<FaceId> = (first_new..made.face_count()).map(FaceId::from).collect();
     let hits = tri_intersect::self_intersections_among(&made, &new, watch).map_err(|_| Refusal::Meets { at })?;
     if let Some(pair) = hits.first() {
-        return Err(Refusal::Meets { at: made.triangle(pair[0]).iter().sum::<DVec3>() / 3.0 }.into());
+        return Err(Refusal::Meets { at: centroid(made.triangle(pair[0])) }.into());
     }
     let closing = rim.ends.is_none().then(|| edge.points[0]);
     let points: Vec<DVec3> = edge.points.iter().copied().chain(closing).collect();

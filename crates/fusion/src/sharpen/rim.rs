@@ -79,7 +79,7 @@ impl End {
     fn of(mesh: &Connected<TriMesh>, walk: &[HalfedgeId]) -> Self {
         let mut vertices: Vec<VertexId> = walk.iter().map(|&h| mesh.tail(h)).collect();
         vertices.extend(walk.last().map(|&h| mesh.head(h)));
-        let beyond = walk.iter().filter_map(|&h| mesh.twin(h)).map(|t| area_vector(mesh.mesh().triangle(t.face())));
+        let beyond = walk.iter().filter_map(|&h| mesh.twin(h)).map(|t| area_vector(mesh.triangle(t.face())));
         Self { vertices, normal: beyond.sum::<DVec3>().normalize_or_zero() }
     }
 }
@@ -87,7 +87,7 @@ impl End {
 /// The loops of border halfedges, each with the rounding on its left.
 fn loops(mesh: &Connected<TriMesh>, rounding: &Rounding) -> Result<Vec<Vec<HalfedgeId>>, Refusal> {
     let inside = |h: HalfedgeId| mesh.twin(h).is_some_and(|t| rounding.of[t.face()] == 2);
-    let own = rounding.faces.iter().flat_map(|&f| (0..3).map(move |k| HalfedgeId::new(f, k)));
+    let own = rounding.faces.iter().flat_map(|f| f.halfedges());
     let border: BTreeSet<HalfedgeId> = own.filter(|&h| !inside(h)).collect();
     if let Some(&h) = border.iter().find(|&&h| mesh.twin(h).is_none()) {
         return Err(Refusal::Boundary { at: mesh.position(mesh.tail(h)) });

@@ -2,7 +2,9 @@
 
 use super::Refusal;
 use glam::DVec3;
-use mesh_core::{Adjacency, Connected, FaceId, FaceMap, Faces, HalfedgeId, TriMesh, dihedral_angle, face_normal};
+use mesh_core::{
+    Adjacency, Connected, FaceId, FaceMap, Faces, HalfedgeId, TriMesh, centroid, dihedral_angle, face_normal,
+};
 use mesh_query::TriBvh;
 
 /// The ball that tells what is rounded, as a multiple of the rounding's radius.
@@ -85,7 +87,7 @@ impl Rounding {
             }
             self.of[f] = label;
             all.push(f);
-            let edges = (0..3).map(|k| HalfedgeId::new(f, k)).filter(|&h| !self.is_crease(mesh, h));
+            let edges = f.halfedges().into_iter().filter(|&h| !self.is_crease(mesh, h));
             stack.extend(edges.filter_map(|h| mesh.twin(h)).map(HalfedgeId::face));
         }
         all.sort_unstable();
@@ -95,7 +97,7 @@ impl Rounding {
     /// Gives back to the sides what lies in one plane with them.
     fn peel(&mut self, mesh: &Connected<TriMesh>, rounded: &[FaceId]) {
         let beside = |of: &FaceMap<u8>, f: FaceId| {
-            let twins = (0..3).filter_map(|k| mesh.twin(HalfedgeId::new(f, k)).map(HalfedgeId::face));
+            let twins = mesh.neighbours(f);
             let n = face_normal(mesh, f);
             twins.filter(|&g| of[g] == 1).any(|g| n.cross(face_normal(mesh, g)).length() < FLAT)
         };
@@ -103,7 +105,7 @@ impl Rounding {
         while let Some(f) = stack.pop() {
             if self.of[f] == 2 && beside(&self.of, f) {
                 self.of[f] = 1;
-                stack.extend((0..3).filter_map(|k| mesh.twin(HalfedgeId::new(f, k)).map(HalfedgeId::face)));
+                stack.extend(mesh.neighbours(f));
             }
         }
     }
@@ -118,7 +120,7 @@ struct Balls<'a> {
 impl Balls<'_> {
     /// The middle of a face, and the direction from there to the ball's centre.
     fn place(&self, face: FaceId, convex: bool) -> (DVec3, DVec3) {
-        let middle = self.mesh.mesh().triangle(face).iter().sum::<DVec3>() / 3.0;
+        let middle = centroid(self.mesh.mesh().triangle(face));
         let normal = face_normal(self.mesh, face);
         (middle, if convex { -normal } else { normal })
     }

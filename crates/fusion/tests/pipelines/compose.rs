@@ -1,7 +1,7 @@
 //! Compositions held against surfaces that are known.
 
 use fusion::compose::{Error, Kernel, Params, compose};
-use fusion::mesh_core::{Connected, TriMesh, VertexId, Watch, shapes, topology, validate};
+use fusion::mesh_core::{Connected, TriMesh, VertexId, Watch, centroid, shapes, topology, validate};
 use glam::{DQuat, DVec3};
 use mesh_io::{Format, Model};
 
@@ -10,7 +10,7 @@ fn part(mesh: &TriMesh, keep: impl Fn(DVec3) -> bool) -> Model {
     let mut cut = TriMesh::default();
     let mut ids = vec![None; mesh.positions.len()];
     for f in &mesh.faces {
-        if keep(f.iter().map(|v| mesh.positions[v.index()]).sum::<DVec3>() / 3.0) {
+        if keep(centroid(f.map(|v| mesh.positions[v.index()]))) {
             cut.faces.push(f.map(|v| {
                 *ids[v.index()].get_or_insert_with(|| {
                     cut.positions.push(mesh.positions[v.index()]);

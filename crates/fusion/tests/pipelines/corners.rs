@@ -4,7 +4,7 @@ use fusion::blend::{Blended, Overlap, Params, blend, max_radius};
 use fusion::features::{self, feature_curves};
 use fusion::round;
 use glam::DVec3;
-use mesh_core::{Connected, Faces, HalfedgeId, Positions, TriMesh, VertexId, VertexOrigin, Watch, shapes, volume};
+use mesh_core::{Connected, Faces, Positions, TriMesh, VertexId, VertexOrigin, Watch, shapes, volume};
 use mesh_io::{Format, Model};
 use spine::BlendCurve;
 use std::f64::consts::PI;
@@ -110,8 +110,9 @@ fn an_l_bracket_has_fair_mixed_corners() {
     assert!(done.mesh.positions.iter().all(inside));
     // Tangent all around: no edge turns by more than the chords of the arcs and of the mixed patches do.
     let connected = Connected::new(&done.mesh).unwrap();
-    let sharpest = (0..3 * done.mesh.face_count())
-        .filter_map(|h| mesh_core::dihedral_angle(&connected, mesh_core::HalfedgeId::from(h)))
+    let sharpest = connected
+        .halfedge_ids()
+        .filter_map(|h| mesh_core::dihedral_angle(&connected, h))
         .fold(0.0, |a: f64, b| a.max(b.abs()));
     assert!(sharpest.to_degrees() < 30.0, "{}", sharpest.to_degrees());
 }
@@ -190,7 +191,7 @@ fn a_step_that_tapers_off_is_rounded_to_its_tip() {
 fn a_curve_of_one_edge_runs_out_at_both_ends() {
     let ball = Connected::new(shapes::uv_sphere(1.0, 24, 12)).unwrap();
     let equator = |v: VertexId| ball.position(v).z.abs() < 1e-9;
-    let mut all = (0..3 * ball.face_count() as u32).map(HalfedgeId);
+    let mut all = ball.halfedge_ids();
     let edge = all.find(|&h| equator(ball.tail(h)) && equator(ball.head(h))).unwrap();
     let curve = BlendCurve { halfedges: vec![edge], closed: false };
     for r in [0.002, 0.02] {

@@ -3,7 +3,7 @@
 use fusion::blend::{Blended, Overlap, Params, blend};
 use fusion::features::{self, feature_curves};
 use glam::{DQuat, DVec3};
-use mesh_core::{Connected, Faces, TriMesh, VertexId, Watch, shapes, volume};
+use mesh_core::{Connected, Faces, TriMesh, VertexId, Watch, centroid, shapes, volume};
 use mesh_query::TriBvh;
 use proptest::prelude::*;
 use spine::BlendCurve;
@@ -55,7 +55,7 @@ fn rounded(mesh: TriMesh, radius: f64, order: impl Fn(&mut Vec<BlendCurve>)) -> 
 fn apart(a: &TriMesh, b: &TriMesh) -> f64 {
     let one_way = |a: &TriMesh, b: &TriMesh| {
         let tree = TriBvh::build(b).unwrap();
-        let middles = a.face_ids().map(|f| a.triangle(f).iter().sum::<DVec3>() / 3.0);
+        let middles = a.face_ids().map(|f| centroid(a.triangle(f)));
         let points = a.positions.iter().copied().chain(middles);
         points.map(|p| tree.closest_point(b, p).unwrap().distance).fold(0.0, f64::max)
     };

@@ -180,7 +180,7 @@ fn creases_turn_the_surface_at_the_opening() {
     let new = |h: HalfedgeId| matches!(made.origins.faces[h.face()], FaceOrigin::New { .. });
     for (part, wanted) in wanted.into_iter().enumerate() {
         let mut angles = vec![];
-        for h in (0..3 * mesh.face_count() as u32).map(HalfedgeId) {
+        for h in mesh.halfedge_ids() {
             let Some(twin) = mesh.twin(h).filter(|&t| new(t)) else { continue };
             if matches!(made.origins.faces[h.face()], FaceOrigin::Input { part: p, .. } if p == part as u32) {
                 // Convex edges turn inward.

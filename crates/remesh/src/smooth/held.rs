@@ -9,7 +9,7 @@ impl Frozen {
     #[must_use]
     pub fn with_features<M: Adjacency + Positions>(mut self, mesh: &M, angle: f64) -> Self {
         let sharp = |&h: &HalfedgeId| dihedral_angle(mesh, h).is_some_and(|a| a.abs() >= angle.to_radians());
-        for h in (0..3 * mesh.face_count() as u32).map(HalfedgeId).filter(sharp) {
+        for h in mesh.halfedge_ids().filter(sharp) {
             if self.vertices.is_empty() {
                 self.vertices = VertexMap::filled(mesh.vertex_count(), false);
             }

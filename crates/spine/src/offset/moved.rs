@@ -66,7 +66,7 @@ impl MovedPatch {
 /// By how much, in radii, a vertex moves: its normal over a fan of faces, angle-weighted, scaled as asked.
 fn offset_direction<M: Adjacency + Positions>(mesh: &M, fan: &[HalfedgeId], keep: OffsetKeep) -> DVec3 {
     let faces = fan.iter().map(|h| {
-        let corners = mesh.corners(h.face()).map(|v| mesh.position(v));
+        let corners = mesh.triangle(h.face());
         (corner_angle(corners, h.corner()), face_normal(mesh, h.face()))
     });
     let normal = faces.clone().map(|(angle, n)| angle * n).sum::<DVec3>().normalize_or_zero();

@@ -34,7 +34,7 @@ pub fn flood<M: Adjacency>(
             if std::mem::replace(&mut reached[f], true) {
                 continue;
             }
-            for h in (0..3).map(|k| HalfedgeId::new(f, k)) {
+            for h in f.halfedges() {
                 if let Some(t) = mesh.twin(h)
                     && !reached[t.face()]
                     && walls.binary_search(&mesh.edge(h)).is_err()
@@ -47,10 +47,7 @@ pub fn flood<M: Adjacency>(
     reached
 }
 
-/// The halfedge from `a` to `b`.
+/// The halfedge from `a` to `b`, also where the mesh has no such vertices.
 fn halfedge<M: Adjacency>(mesh: &M, a: VertexId, b: VertexId) -> Option<HalfedgeId> {
-    if a.index() >= mesh.vertex_count() {
-        return None;
-    }
-    mesh.ring(a).find(|&h| mesh.head(h) == b)
+    if a.index() < mesh.vertex_count() { mesh.halfedge(a, b) } else { None }
 }

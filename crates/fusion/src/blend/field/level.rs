@@ -19,7 +19,7 @@ pub(crate) fn level_curves<M: Faces + Positions>(
     let leaves = |h: HalfedgeId| negative(fine.tail(h)) && !negative(fine.head(h));
     let mut seen = vec![false; 3 * fine.face_count()];
     let mut curves = vec![];
-    for start in (0..3 * fine.face_count() as u32).map(HalfedgeId) {
+    for start in fine.halfedge_ids() {
         if seen[start.index()] || !leaves(start) {
             continue;
         }
@@ -79,7 +79,7 @@ fn moved<M: Faces + Positions>(mesh: &M, point: SurfacePoint, by: DVec3) -> Surf
             SurfacePoint::Edge { halfedge, t: (t + along).clamp(MARGIN.min(t), (1.0 - MARGIN).max(t)) }
         }
         SurfacePoint::Face { face, barycentric } => {
-            let [a, b, c] = mesh.corners(face).map(|v| mesh.position(v));
+            let [a, b, c] = mesh.triangle(face);
             let normal = (b - a).cross(c - a);
             let area = normal.length_squared().max(f64::MIN_POSITIVE);
             // Side k of these runs from one to the next, opposite corner k.

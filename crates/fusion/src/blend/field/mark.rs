@@ -87,7 +87,7 @@ fn smoothed(mesh: &Connected<TriMesh>, value: &[f64], sigma: f64) -> Vec<f64> {
     let (mut columns, mut starts) = (Vec::<(u32, f64)>::new(), vec![0]);
     for (i, &v) in ids.iter().enumerate() {
         for h in mesh.ring(v) {
-            let corners = mesh.mesh().triangle(h.face());
+            let corners = mesh.triangle(h.face());
             mass[i] += mesh_core::area_vector(corners).length() / 3.0;
             let j = own[mesh.head(h).index()];
             if j != u32::MAX {

@@ -34,7 +34,7 @@ use glam::DVec3;
 use level::level_curves;
 use mark::scalar;
 use mesh_core::{
-    Adjacency, Connected, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, Watch,
+    Adjacency, Connected, FaceId, FaceMap, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, Watch,
 };
 use piece::{CutOut, cut_out, kept_chords, put_back};
 use profile_nurbs::Profile;
@@ -147,7 +147,7 @@ fn settle_on(sides: &Sides<'_>, curves: &[BlendCurve], params: &Params, watch: &
 fn full_share(mesh: &Connected<TriMesh>, curves: &[BlendCurve], radius: &RadiusField) -> f64 {
     let (mut full, mut total) = (0.0, 0.0);
     for &h in curves.iter().flat_map(|c| &c.halfedges) {
-        let [a, b] = [mesh.position(mesh.tail(h)), mesh.position(mesh.head(h))];
+        let [a, b] = mesh.ends(h);
         total += a.distance(b);
         if radius.at(a.midpoint(b)).0 >= 0.999 * radius.base {
             full += a.distance(b);
@@ -208,8 +208,7 @@ fn attempt(
 ) -> Result<Blended, Trouble> {
     let mesh = sides.mesh;
     let (fine, origins, of) = refined(sides, radius.base)?;
-    let fine =
-        Connected::new(fine).map_err(|e| Trouble::at("the mesh is not a manifold", e.place.into_iter().collect()))?;
+    let fine = Connected::new(fine).map_err(Trouble::not_manifold("the mesh is not a manifold"))?;
     let seam = between(&fine, &of);
     let value = scalar(&fine, &of, &seam, sides, radius);
     let loops = level_curves(mesh, &fine, &origins, &value, FAIRED * radius.base);
@@ -221,8 +220,7 @@ fn attempt(
     let embedded = embed(mesh, &loops, &how, watch).map_err(refusal)?;
     let chain = |c: &Vec<VertexId>| (c.iter().map(|&v| embedded.mesh.positions[v.index()]).collect(), true);
     page.draw_field("linkages", || Drawing::Lines(embedded.curves.iter().map(chain).collect()));
-    let cut = Connected::new(&embedded.mesh)
-        .map_err(|e| Trouble::at("the cut mesh is not a manifold", e.place.into_iter().collect()))?;
+    let cut = Connected::new(&embedded.mesh).map_err(Trouble::not_manifold("the cut mesh is not a manifold"))?;
     let removed = enclosed(sides, &cut, &embedded)?;
     let pieces = cut_out(&embedded.mesh, &removed, &embedded.curves).pieces();
     let drawn: Vec<Result<Drawn, Trouble>> = pieces
@@ -237,7 +235,7 @@ fn attempt(
         })
         .collect();
     *earlier = drawn.into_iter().collect::<Result<_, _>>()?;
-    page.draw_field("surface", || Drawing::together(earlier.iter().map(|d| &d.made)));
+    page.draw_field("surface", || Drawing::Mesh(TriMesh::merged(earlier.iter().map(|d| &d.made))));
     let mut first_new = embedded.mesh.vertex_count() as u32;
     let mut back = Vec::with_capacity(pieces.len());
     for (piece, drawn) in pieces.iter().zip(earlier.iter()) {
@@ -247,21 +245,7 @@ fn attempt(
     let opened = Opened { linkages: vec![], joints: vec![], stops: vec![], loops: vec![], embedded };
     let sewn = sew(&opened, &removed, &back);
     check(&sewn, watch)?;
-    Ok(Blended {
-        mesh: sewn.mesh,
-        origins: sewn.origins,
-        first_blend_face: sewn.first_new_face,
-        strips: 0,
-        fields: back.len(),
-        corners: 0,
-        residual: 0.0,
-        bridged: 0,
-        shrunk: vec![],
-        fallbacks: vec![],
-        run_outs: vec![],
-        levels: 0,
-        full_share: 1.0,
-    })
+    Ok(Blended { fields: back.len(), ..Blended::new(sewn.mesh, sewn.origins, sewn.first_new_face) })
 }
 
 /// The mesh with edges near the seam short enough for the ball to be seen on them, its origins, and its faces' sides.
@@ -270,11 +254,7 @@ fn refined(sides: &Sides<'_>, r: f64) -> Result<(TriMesh, Origins, FaceMap<u8>),
     let wanted = |p: DVec3| sides.distance(0, p).max(sides.distance(1, p)) - 2.0 * r;
     let failed = |_| Trouble::at("the surface near the seam cannot be refined", vec![]);
     let (fine, origins) = remesh::refine(sides.mesh, &wanted, 0.3 * r).map_err(failed)?;
-    let side = |o: &FaceOrigin| match *o {
-        FaceOrigin::Input { face, .. } | FaceOrigin::Piece { face, .. } => sides.of[face],
-        FaceOrigin::New { .. } => 2,
-    };
-    let of = origins.faces.as_slice().iter().map(side).collect::<Vec<_>>().into();
+    let of = sides.of_origins(&origins);
     Ok((fine, origins, of))
 }
 
@@ -292,19 +272,12 @@ fn refusal(error: EmbedError) -> Trouble {
 /// The faces between the linkages; each linkage must have them on one side and others on the other.
 fn enclosed(sides: &Sides<'_>, cut: &Connected<&TriMesh>, embedded: &Embedded) -> Result<FaceMap<bool>, Trouble> {
     // The seam is at vertices of the input, whose faces keep their side when they are cut.
-    let side = |o: &FaceOrigin| match *o {
-        FaceOrigin::Input { face, .. } | FaceOrigin::Piece { face, .. } => sides.of[face],
-        FaceOrigin::New { .. } => 2,
-    };
-    let of: FaceMap<u8> = embedded.origins.faces.as_slice().iter().map(side).collect::<Vec<_>>().into();
+    let of = sides.of_origins(&embedded.origins);
     let seeds: Vec<FaceId> = between(cut, &of).into_iter().flat_map(|v| cut.ring(v)).map(HalfedgeId::face).collect();
     let walls = embedded.curves.iter().flat_map(|c| curve_edges(c, true));
     let removed = flood(cut, walls, &seeds);
     for [a, b] in embedded.curves.iter().flat_map(|c| curve_edges(c, true)) {
-        let faces = cut
-            .ring(a)
-            .find(|&h| cut.head(h) == b)
-            .map(|h| [Some(h), cut.twin(h)].map(|h| h.map(|h| removed[h.face()])));
+        let faces = cut.halfedge(a, b).map(|h| [Some(h), cut.twin(h)].map(|h| h.map(|h| removed[h.face()])));
         if !matches!(faces, Some([Some(x), Some(y)]) if x != y) {
             return Err(Trouble::at("the linkages do not enclose the blend curve", vec![cut.position(a)]));
         }

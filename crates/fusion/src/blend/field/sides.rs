@@ -3,7 +3,8 @@
 use crate::blend::trouble::Trouble;
 use glam::DVec3;
 use mesh_core::{
-    Adjacency, Connected, FaceId, FaceMap, Faces, HalfedgeId, Positions, TriMesh, VertexId, corner_angle, face_normals,
+    Adjacency, Connected, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId,
+    corner_angle, face_normals,
 };
 use mesh_query::{ClosestPoint, TriBvh};
 use rayon::prelude::*;
@@ -59,6 +60,15 @@ impl<'a> Sides<'a> {
         Ok(Self { mesh, of, trees, faces, corners, sign })
     }
 
+    /// The sides that the faces of a mesh made from this one come from; 2 for new faces.
+    pub fn of_origins(&self, origins: &Origins) -> FaceMap<u8> {
+        let side = |o: &FaceOrigin| match *o {
+            FaceOrigin::Input { face, .. } | FaceOrigin::Piece { face, .. } => self.of[face],
+            FaceOrigin::New { .. } => 2,
+        };
+        origins.faces.as_slice().iter().map(side).collect::<Vec<_>>().into()
+    }
+
     /// Side `k` from `p`; `None` only for points that are not finite.
     pub fn seen(&self, k: usize, p: DVec3) -> Option<Seen> {
         let near = self.trees[k].closest_point(self.mesh, p)?;
@@ -67,7 +77,7 @@ impl<'a> Sides<'a> {
         let away = p - near.point;
         let outside = if away.dot(side) >= 0.0 { 1.0 } else { -1.0 };
         // Right on the surface, the direction away from it is noise.
-        let size = self.mesh.mesh().triangle(near.face)[0].distance(p).max(near.distance);
+        let size = self.mesh.triangle(near.face)[0].distance(p).max(near.distance);
         let gradient = if near.distance > 1e-9 * size { (outside * away).normalize_or(normal) } else { normal };
         Some(Seen { distance: outside * near.distance, gradient, foot: near.point, normal })
     }
@@ -101,9 +111,9 @@ impl<'a> Sides<'a> {
 /// of a boolean's seam have no say in which those are.
 fn corner_normal(mesh: &Connected<TriMesh>, of: &FaceMap<u8>, faces: &FaceMap<DVec3>, h: HalfedgeId) -> DVec3 {
     let (own, v) = (h.face(), mesh.tail(h));
-    let area = |f: FaceId| mesh_core::area_vector(mesh.mesh().triangle(f));
+    let area = |f: FaceId| mesh_core::area_vector(mesh.triangle(f));
     let mut reference = faces[own];
-    let longest = (0..3).map(|k| side_squared(mesh, HalfedgeId::new(own, k))).fold(0.0, f64::max);
+    let longest = own.halfedges().map(|h| side_squared(mesh, h)).into_iter().fold(0.0, f64::max);
     if area(own).length() < SLIVER * longest {
         let around = mesh.ring(v).map(HalfedgeId::face).filter(|f| of[*f] == of[own]);
         reference = around.map(area).sum::<DVec3>().normalize_or(reference);
@@ -112,7 +122,7 @@ fn corner_normal(mesh: &Connected<TriMesh>, of: &FaceMap<u8>, faces: &FaceMap<DV
     let sum: DVec3 = mesh
         .ring(v)
         .filter(|g| alike(&g.face()))
-        .map(|g| corner_angle(mesh.mesh().triangle(g.face()), g.corner()) * faces[g.face()])
+        .map(|g| corner_angle(mesh.triangle(g.face()), g.corner()) * faces[g.face()])
         .sum();
     sum.normalize_or(reference)
 }
@@ -138,7 +148,7 @@ fn colour(mesh: &Connected<TriMesh>, curves: &[BlendCurve]) -> Result<FaceMap<u8
         of[seed] = 0;
         let mut queue = VecDeque::from([seed]);
         while let Some(f) = queue.pop_front() {
-            for h in (0..3).map(|k| HalfedgeId::new(f, k)) {
+            for h in f.halfedges() {
                 let Some(t) = mesh.twin(h) else { continue };
                 let colour = if wall[h.index()] { 1 - of[f] } else { of[f] };
                 if of[t.face()] == 2 {

@@ -1,7 +1,7 @@
 //! Blends made on a coarse level of a decimation hierarchy, with the finer levels' details put back (\[Liu2005\] §6.3).
 
 use super::refusal::Refusal;
-use super::{Params, blend_level};
+use super::{Params, blend_level, check_apart};
 use crate::blend::{Blended, Error, Params as BlendParams, sew};
 use glam::DVec3;
 use mesh_core::{
@@ -65,7 +65,7 @@ fn on_level(
     }
     let edge = |a: VertexId, b: VertexId| {
         let [a, b] = [now[a.index()], now[b.index()]];
-        coarse.ring(a).find(|&g| coarse.head(g) == b).ok_or(spine::Error::NotAnEdge { from: a, to: b, at: DVec3::NAN })
+        coarse.halfedge(a, b).ok_or(spine::Error::NotAnEdge { from: a, to: b, at: DVec3::NAN })
     };
     let moved = |curve: &BlendCurve| -> Result<BlendCurve, spine::Error> {
         let halfedges = curve.halfedges.iter().map(|&h| edge(mesh.tail(h), mesh.head(h))).collect::<Result<_, _>>()?;
@@ -76,12 +76,7 @@ fn on_level(
     let at = made.mesh.positions.first().copied().unwrap_or(DVec3::ZERO);
     let fine = hierarchy.restore(&made.mesh.positions).map_err(|_| Refusal::Meets { pairs: 0, at })?;
     let (origins, changed) = account(mesh, &fine);
-    let hits =
-        tri_intersect::self_intersections_among(&fine, &changed, watch).map_err(|_| Refusal::Meets { pairs: 0, at })?;
-    if let Some(pair) = hits.first() {
-        let middle = fine.triangle(pair[0]).iter().sum::<DVec3>() / 3.0;
-        return Err(Refusal::Meets { pairs: hits.len(), at: middle }.into());
-    }
+    check_apart(&fine, &changed, watch)?;
     Ok(Blended {
         first_blend_face: FaceId::from(fine.faces.len()),
         mesh: fine,

@@ -7,7 +7,7 @@ use super::region::Region;
 use super::target::Target;
 use crate::blend::sketch::{Drawing, Page};
 use glam::{DVec2, DVec3};
-use mesh_core::{Adjacency, Connected, Faces, HalfedgeId, TriMesh, VertexId};
+use mesh_core::{Adjacency, Connected, Faces, TriMesh, VertexId, centroid};
 use param_conformal::{Error as MapError, Outline, RingMap, Weights, map_ring_with, relax};
 
 /// How far an edge may stand off the surface, in radii: an arc's edge that turns by 63 degrees.
@@ -21,7 +21,7 @@ pub(super) fn settle(region: &Region, target: &Target, params: &Params, page: Pa
     page.draw("domain", || Drawing::Mesh(flat(region, &map)));
     let distortion = map.distortion(&region.local);
     if let Some(&face) = distortion.flipped.first() {
-        let at = region.local.mesh().triangle(face).iter().sum::<DVec3>() / 3.0;
+        let at = centroid(region.local.mesh().triangle(face));
         return Err(Refusal::Flipped { face: region.faces[face.index()], at, count: distortion.flipped.len() });
     }
     let points: Vec<DVec3> = map.points.as_slice().iter().map(|&p| target.point(p)).collect();
@@ -34,7 +34,7 @@ pub(super) fn settle(region: &Region, target: &Target, params: &Params, page: Pa
 
 /// The region in the plane: t along x, the way across along y; cut open, so that every corner is a vertex of its own.
 fn flat(region: &Region, map: &RingMap) -> TriMesh {
-    let corners = (0..3 * region.local.face_count()).map(HalfedgeId::from);
+    let corners = region.local.halfedge_ids();
     let face = |f: usize| [0, 1, 2].map(|k| VertexId::from(3 * f + k));
     TriMesh {
         positions: corners.map(|h| map.corner(&region.local, h).extend(0.0)).collect(),
@@ -64,7 +64,7 @@ fn flatten(
 fn check_fineness(region: &Region, target: &Target, map: &RingMap, points: &[DVec3]) -> Result<(), Refusal> {
     let local: &Connected<TriMesh> = &region.local;
     let most = MOST_SAGITTA * target.radius;
-    for h in (0..3 * local.face_count()).map(HalfedgeId::from) {
+    for h in local.halfedge_ids() {
         if local.twin(h).is_some_and(|t| t < h) {
             continue;
         }

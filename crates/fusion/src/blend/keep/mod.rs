@@ -26,7 +26,7 @@ use domain::settle;
 use glam::DVec3;
 use mesh_core::{
     Adjacency, Connected, FaceId, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, VertexOrigin,
-    Watch, triangle_normal,
+    Watch, centroid, triangle_normal,
 };
 use param_conformal::{RelaxParams, Seam};
 use rayon::prelude::*;
@@ -115,21 +115,11 @@ fn blend_level(
     let moved = TriMesh { positions, faces: mesh.mesh().faces.clone() };
     let origins = account(mesh, &regions);
     check(mesh, &moved, &regions, &origins, watch)?;
-    let residual = rails.iter().map(|r| r.residual).fold(0.0, f64::max) / params.radius;
+    let first_blend_face = FaceId::from(moved.faces.len());
     Ok(Blended {
-        first_blend_face: FaceId::from(moved.faces.len()),
-        mesh: moved,
-        origins,
         strips: rails.len(),
-        fields: 0,
-        corners: 0,
-        residual,
-        bridged: 0,
-        shrunk: Vec::new(),
-        fallbacks: Vec::new(),
-        run_outs: Vec::new(),
-        levels: 0,
-        full_share: 1.0,
+        residual: rails.iter().map(|r| r.residual).fold(0.0, f64::max) / params.radius,
+        ..Blended::new(moved, origins, first_blend_face)
     })
 }
 
@@ -219,7 +209,6 @@ fn check(
     origins: &Origins,
     watch: &Watch,
 ) -> Result<(), Error> {
-    let middle = |f: FaceId| moved.triangle(f).iter().sum::<DVec3>() / 3.0;
     let mut changed = Vec::new();
     for (region, _) in regions {
         let beside = region.vertices.iter().flat_map(|&v| mesh.ring(v)).map(HalfedgeId::face);
@@ -228,18 +217,24 @@ fn check(
         beside.sort_unstable();
         beside.dedup();
         for &f in &beside {
-            let (before, after) = (triangle_normal(mesh.mesh().triangle(f)), triangle_normal(moved.triangle(f)));
+            let (before, after) = (triangle_normal(mesh.triangle(f)), triangle_normal(moved.triangle(f)));
             if before.dot(after) < LEAST_COSINE {
-                return Err(Refusal::Sheared { face: f, at: middle(f) }.into());
+                return Err(Refusal::Sheared { face: f, at: centroid(moved.triangle(f)) }.into());
             }
         }
         changed.extend(beside);
         changed.extend_from_slice(&region.faces);
     }
-    let hits = tri_intersect::self_intersections_among(moved, &changed, watch)
-        .map_err(|_| Refusal::Meets { pairs: 0, at: middle(changed[0]) })?;
+    Ok(check_apart(moved, &changed, watch)?)
+}
+
+/// None of the changed faces may meet another.
+fn check_apart(mesh: &TriMesh, changed: &[FaceId], watch: &Watch) -> Result<(), Refusal> {
+    let middle = |f: &FaceId| centroid(mesh.triangle(*f));
+    let unknown = |_| Refusal::Meets { pairs: 0, at: changed.first().map_or(DVec3::ZERO, middle) };
+    let hits = tri_intersect::self_intersections_among(mesh, changed, watch).map_err(unknown)?;
     match hits.first() {
         None => Ok(()),
-        Some(pair) => Err(Refusal::Meets { pairs: hits.len(), at: middle(pair[0]) }.into()),
+        Some(pair) => Err(Refusal::Meets { pairs: hits.len(), at: middle(&pair[0]) }),
     }
 }

@@ -246,7 +246,7 @@ impl Growth<'_> {
             }
         }
         let mut found = Vec::new();
-        for h in (0..3 * local.face_count()).map(HalfedgeId::from) {
+        for h in local.halfedge_ids() {
             let (a, b) = (local.tail(h), local.head(h));
             let chord = on_loop[a.index()] != NONE && on_loop[a.index()] == on_loop[b.index()];
             if chord && local.twin(h).is_some_and(|t| h < t) {

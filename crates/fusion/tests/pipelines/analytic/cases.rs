@@ -2,7 +2,7 @@
 
 use super::truth::{Shape, Spine, Truth};
 use glam::{DAffine3, DQuat, DVec3, EulerRot};
-use mesh_core::{Adjacency, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, dihedral_angle, shapes};
+use mesh_core::{Adjacency, Connected, FaceId, Faces, Positions, TriMesh, centroid, dihedral_angle, shapes};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use tri_intersect::Operation::{self, Difference, Intersection, Union};
 
@@ -118,22 +118,22 @@ impl Case {
     pub fn coarseness(&self, part: usize) -> (f64, f64) {
         let (mesh, truth) = (&self.parts[part], &self.truth);
         let near = |f: FaceId| {
-            let corners = mesh.corners(f).map(|v| mesh.position(v));
+            let corners = mesh.triangle(f);
             let on_shape = corners.iter().all(|&p| truth.part_distance(part, p).abs() < 1e-9);
-            let middle = corners.iter().sum::<DVec3>() / 3.0;
+            let middle = centroid(corners);
             let touched = corners.iter().chain([&middle]).any(|&p| truth.near(p).distance < 1.1 * truth.radius);
             on_shape && touched
         };
         let used: Vec<bool> = mesh.face_ids().map(near).collect();
         let (mut sagitta, mut angle) = (0.0f64, 0.0f64);
         for f in mesh.face_ids().filter(|f| used[f.index()]) {
-            let [a, b, c] = mesh.corners(f).map(|v| mesh.position(v));
+            let [a, b, c] = mesh.triangle(f);
             for (i, j) in (0..=6).flat_map(|i| (0..=6 - i).map(move |j| (i, j))) {
                 let (u, v) = (f64::from(i) / 6.0, f64::from(j) / 6.0);
                 let p = u * a + v * b + (1.0 - u - v) * c;
                 sagitta = sagitta.max(truth.part_distance(part, p).abs());
             }
-            for h in (0..3).map(|k| HalfedgeId::new(f, k)) {
+            for h in f.halfedges() {
                 if mesh.twin(h).is_some_and(|t| used[t.face().index()]) {
                     angle = angle.max(dihedral_angle(mesh, h).unwrap_or(0.0).abs());
                 }

@@ -87,7 +87,7 @@ pub fn measure(case: &Case, run: &Run) -> Measured {
     let mut rim = Vec::new();
     let (mut kink, mut beyond, mut drift) = (0.0f64, f64::NEG_INFINITY, 0.0f64);
     for f in (first.0..mesh.face_count() as u32).map(FaceId) {
-        for h in (0..3).map(|k| HalfedgeId::new(f, k)) {
+        for h in f.halfedges() {
             let Some(other) = connected.twin(h).map(HalfedgeId::face).filter(|&o| o < first) else { continue };
             let p = mesh.position(connected.tail(h));
             rim.push(p);

@@ -4,7 +4,7 @@ use super::cases::Pair::{self, Branch, Cross, PlateCylinder, PlateSphere, Sphere
 use super::cases::{COARSE, Case, RADIUS, SMALLER};
 use super::measure::run;
 use glam::DVec3;
-use mesh_core::{Connected, Faces, TriMesh};
+use mesh_core::{Connected, Faces, TriMesh, centroid};
 use mesh_query::TriBvh;
 use tri_intersect::Operation::{self, Difference, Intersection, Union};
 
@@ -37,7 +37,7 @@ fn one_thread_and_two_give_the_same_bits() {
 fn apart(a: &TriMesh, b: &TriMesh) -> f64 {
     let one_way = |a: &TriMesh, b: &TriMesh| {
         let tree = TriBvh::build(b).expect("not empty");
-        let middles = a.face_ids().map(|f| a.triangle(f).iter().sum::<DVec3>() / 3.0);
+        let middles = a.face_ids().map(|f| centroid(a.triangle(f)));
         let points = a.positions.iter().copied().chain(middles);
         points.map(|p| tree.closest_point(b, p).map_or(f64::INFINITY, |c| c.distance)).fold(0.0, f64::max)
     };
