@@ -67,7 +67,7 @@ fn read(path: &str) -> Result<(Seconds, usize), Fault> {
 fn union(a: &TriMesh, b: &TriMesh) -> Result<(Seconds, usize), Fault> {
     let (seconds, both) = timed(|| {
         let [a, b] = [Connected::new(a.clone())?, Connected::new(b.clone())?];
-        Ok(tri_intersect::boolean(&a, &b, Operation::Union, &Default::default(), &Watch::default())?)
+        Ok(tri_intersect::boolean(&a, &b, Operation::Union, &tri_intersect::Params::default(), &Watch::default())?)
     })?;
     Ok((seconds, both.mesh.face_count()))
 }

@@ -129,10 +129,17 @@ fn canonical() -> Vec<IVec3> {
     all.collect()
 }
 
+/// Two cells apart, and how the one lies from the other.
+struct Pair {
+    pose: Pose,
+    target: u32,
+    source: u32,
+}
+
 /// Targets that one matrix product serves, each with its sources.
 #[derive(Default)]
 struct Batch<'a> {
-    targets: Vec<(&'a mut [f64], &'a [(Pose, u32, u32)])>,
+    targets: Vec<(&'a mut [f64], &'a [Pair])>,
     columns: usize,
 }
 
@@ -152,9 +159,8 @@ pub(crate) struct Plan<'a> {
     /// None where the points are the centres themselves.
     targets: Option<Octree>,
     meetings: Meetings,
-    /// Of the meetings apart: how their offset lies, the target, the source. By matrix and target, so that a product knows no
-    /// other's targets.
-    far: Vec<(Pose, u32, u32)>,
+    /// The meetings apart, by matrix and target, so that a product knows no other's targets.
+    far: Vec<Pair>,
 }
 
 impl<'a> Plan<'a> {
@@ -168,9 +174,9 @@ impl<'a> Plan<'a> {
             &source_tree,
             translations.basis.nodes.len().pow(3),
         );
-        let mut far: Vec<(Pose, u32, u32)> =
-            std::mem::take(&mut meetings.far).into_iter().map(|(offset, t, s)| (Pose::of(offset), t, s)).collect();
-        far.par_sort_unstable_by_key(|&(pose, t, s)| (pose.matrix, t, pose, s));
+        let pair = |(offset, target, source)| Pair { pose: Pose::of(offset), target, source };
+        let mut far: Vec<Pair> = std::mem::take(&mut meetings.far).into_iter().map(pair).collect();
+        far.par_sort_unstable_by_key(|p| (p.pose.matrix, p.target, p.pose, p.source));
         Self { translations, frame, sources: source_tree, targets: target_tree, meetings, far }
     }
 
@@ -240,11 +246,11 @@ impl<'a> Plan<'a> {
     /// Grid to grid, one matrix after the other.
     fn translate<K: Radial>(&self, outer: &[f64], inner: &mut [f64]) {
         let q = self.translations.basis.len();
-        for pairs in self.far.chunk_by(|a, b| a.0.matrix == b.0.matrix) {
+        for pairs in self.far.chunk_by(|a, b| a.pose.matrix == b.pose.matrix) {
             let mut targets = inner.chunks_mut(q).enumerate();
             let mut batches: Vec<Batch<'_>> = vec![];
-            for of_target in pairs.chunk_by(|a, b| a.1 == b.1) {
-                let Some((_, expansion)) = targets.find(|(c, _)| *c == of_target[0].1 as usize) else { continue };
+            for of_target in pairs.chunk_by(|a, b| a.target == b.target) {
+                let Some((_, expansion)) = targets.find(|(c, _)| *c == of_target[0].target as usize) else { continue };
                 if batches.last().is_none_or(|batch| batch.columns >= BATCH) {
                     batches.push(Batch::default());
                 }
@@ -258,15 +264,15 @@ impl<'a> Plan<'a> {
     }
 
     fn translate_batch<K: Radial>(&self, outer: &[f64], batch: Batch<'_>) {
-        let Some(&(pose, ..)) = batch.targets.first().and_then(|t| t.1.first()) else { return };
+        let Some(Pair { pose, .. }) = batch.targets.first().and_then(|t| t.1.first()) else { return };
         let (q, count, matrix) =
             (self.translations.basis.len(), batch.columns, &self.translations.matrices[pose.matrix]);
         let mut from = vec![0.0; q * count];
         let mut columns = from.chunks_mut(q);
-        for (&(pose, _, source), column) in batch.targets.iter().flat_map(|t| t.1).zip(&mut columns) {
-            let width = self.frame.cell_width(self.sources.cells[source as usize].level);
+        for (pair, column) in batch.targets.iter().flat_map(|t| t.1).zip(&mut columns) {
+            let width = self.frame.cell_width(self.sources.cells[pair.source as usize].level);
             let scale = K::value(0.25 * width * width, 0.5 * width);
-            for ((n, sign), v) in self.translations.names(pose).zip(&outer[source as usize * q..]) {
+            for ((n, sign), v) in self.translations.names(pair.pose).zip(&outer[pair.source as usize * q..]) {
                 column[n] = sign * v * scale;
             }
         }
@@ -283,8 +289,8 @@ impl<'a> Plan<'a> {
         }
         let mut columns = to.chunks(q);
         for (expansion, pairs) in batch.targets {
-            for (&(pose, ..), column) in pairs.iter().zip(&mut columns) {
-                for (t, (n, sign)) in expansion.iter_mut().zip(self.translations.names(pose)) {
+            for (pair, column) in pairs.iter().zip(&mut columns) {
+                for (t, (n, sign)) in expansion.iter_mut().zip(self.translations.names(pair.pose)) {
                     *t += sign * column[n];
                 }
             }
