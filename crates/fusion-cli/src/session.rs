@@ -152,7 +152,9 @@ impl Session {
     }
 
     fn tell_stages(&self, report: &Report) {
-        told(&report.warnings).iter().for_each(|warning| self.warn(warning));
+        for warning in told(&report.warnings) {
+            self.warn(&warning);
+        }
         for stage in &report.stages {
             self.note(&format!("{:<24} {:>10.3} ms", stage.name, stage.milliseconds));
         }

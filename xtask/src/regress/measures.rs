@@ -57,7 +57,9 @@ fn cases() -> Result<Vec<Value>, Fault> {
     let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.7);
     let moved = shapes::posed(torus.mesh().clone(), turn, DVec3::new(0.4, 0.3, 0.2));
     cases.push(meetings("blob and torus as one mesh", &both(blob.mesh(), &moved))?);
-    cases.push(meetings("bracket twice", &both(bracket.mesh(), bracket.mesh()))?);
+    // No corner on another's: libigl takes corners in one place for one, and passes over faces that coincide.
+    let beside = shapes::posed(bracket.mesh().clone(), DQuat::IDENTITY, DVec3::new(0.0, 0.33, 0.11));
+    cases.push(meetings("brackets in common planes as one mesh", &both(bracket.mesh(), &beside))?);
     for (operation, theirs) in
         [(Operation::Union, "union"), (Operation::Difference, "minus"), (Operation::Intersection, "intersect")]
     {
@@ -117,7 +119,7 @@ fn surface(name: &str, mesh: &Connected<TriMesh>) -> Value {
     let halfedges = mesh.face_ids().flat_map(|f| (0..3).map(move |k| HalfedgeId::new(f, k)));
     let edges = halfedges.filter(|&h| mesh.twin(h).is_none_or(|t| h < t));
     let weights = edges.map(|h| json!([mesh.tail(h).0, mesh.head(h).0, cotangent_weight(mesh, &cot, h)]));
-    let areas = mesh.face_ids().map(|f| 0.5 * area_vector(mesh.mesh().triangle(f)).length());
+    let areas = mesh.face_ids().map(|f| area_vector(mesh.mesh().triangle(f)).length());
     let measured = json!({
         "face_normals": numbers(face_normals(mesh).as_slice()),
         "vertex_normals": numbers(vertex_normals(mesh).as_slice()),

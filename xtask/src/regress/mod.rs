@@ -38,6 +38,7 @@ use threads::Threads;
 
 /// What to run.
 #[derive(clap::Args, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag that can be typed")]
 pub struct Options {
     /// Approve what the cases give now
     #[arg(long)]
