@@ -73,7 +73,9 @@ fn root() -> PathBuf {
 
 /// The build of a program of this workspace that belongs to the running one, made if need be.
 fn binary(name: &str) -> Result<PathBuf, Fault> {
-    let status = Command::new(env!("CARGO")).args(["build", "--quiet", "-p", name]).current_dir(root()).status()?;
+    let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
+    let build = ["build", "--quiet", "--profile", profile, "-p", name];
+    let status = Command::new(env!("CARGO")).args(build).current_dir(root()).status()?;
     if !status.success() {
         return Err(format!("{name} does not build").into());
     }

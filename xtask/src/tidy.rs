@@ -70,6 +70,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "mesh-core",
             "mesh-io",
             "mesh-query",
+            "param-conformal",
             "tri-intersect",
             "clap",
             "serde",

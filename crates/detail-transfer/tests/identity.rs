@@ -3,6 +3,7 @@
 use detail_transfer::{BaseParams, Error, Reconstruction, Relief, roughness};
 use glam::{DQuat, DVec3};
 use mesh_core::{Connected, FaceMap, Faces, TriMesh, Watch, bounds, centroid, shapes};
+use proptest::prelude::*;
 
 fn rough_ball() -> Connected<TriMesh> {
     let mut ball = shapes::icosphere(1.0, 4);
@@ -153,4 +154,34 @@ fn what_cannot_be_encoded_is_refused() {
     assert!(matches!(encode(&Connected::new(broken).unwrap(), &all, 0.5), Error::NotFinite { .. }));
     watch.cancel();
     assert!(matches!(encode(&mesh, &all, 0.5), Error::Cancelled(_)));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 8, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Any waves on any cap, at any size and place: what is taken apart goes together again.
+    #[test]
+    fn any_waves_come_back(
+        cycles in prop::array::uniform3(3.0f64..20.0),
+        height in 0.001f64..0.02,
+        above in -0.8f64..0.8,
+        wavelength in 0.3f64..2.0,
+        size in -6i32..6,
+        shift in prop::array::uniform3(-3.0f64..3.0),
+    ) {
+        let mut ball = shapes::icosphere(1.0, 3);
+        for p in &mut ball.positions {
+            *p *= 1.0 + height * (DVec3::from(cycles) * *p).to_array().map(f64::sin).iter().sum::<f64>();
+        }
+        let inside = cap(&Connected::new(ball.clone()).unwrap(), above);
+        let size = 10f64.powi(size);
+        ball.positions.iter_mut().for_each(|p| *p = size * (*p + DVec3::from(shift)));
+        let mesh = Connected::new(ball).unwrap();
+        let relief = encode(&mesh, &inside, size * wavelength);
+        let places = Reconstruction::new(&relief, &relief.interior()).unwrap().solve(relief.details());
+        for (p, v) in places.iter().zip(relief.vertices()) {
+            let error = p.distance(mesh.mesh().positions[v.index()]);
+            prop_assert!(error <= 1e-8 * bounds(mesh.mesh()).diagonal(), "{error:e}");
+        }
+    }
 }

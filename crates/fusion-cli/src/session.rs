@@ -152,24 +152,39 @@ impl Session {
     }
 
     fn tell_stages(&self, report: &Report) {
-        // Places that share one trouble can be hundreds; the report keeps them all.
-        const SHOWN: usize = 3;
-        let trouble = |warning: &str| warning.split_once(" near ").map_or_else(|| warning.to_string(), |w| w.0.into());
-        let mut met: BTreeMap<String, usize> = BTreeMap::new();
-        for warning in &report.warnings {
-            let seen = met.entry(trouble(warning)).or_default();
-            *seen += 1;
-            if *seen <= SHOWN {
-                self.warn(warning);
-            }
-        }
-        for (what, more) in met.into_iter().filter(|m| m.1 > SHOWN) {
-            self.warn(&format!("{what} at {} more places, which --report lists", more - SHOWN));
+        for warning in told(&report.warnings) {
+            self.warn(&warning);
         }
         for stage in &report.stages {
             self.note(&format!("{:<24} {:>10.3} ms", stage.name, stage.milliseconds));
         }
     }
+}
+
+/// What is printed of a report's warnings: places that share one trouble can be hundreds, and the report keeps them all.
+fn told(warnings: &[String]) -> Vec<String> {
+    const SHOWN: usize = 3;
+    let mut met: BTreeMap<String, usize> = BTreeMap::new();
+    let mut lines = vec![];
+    for warning in warnings {
+        let seen = met.entry(trouble(warning)).or_default();
+        *seen += 1;
+        if *seen <= SHOWN {
+            lines.push(warning.clone());
+        }
+    }
+    lines.extend(met.into_iter().filter(|m| m.1 > SHOWN).map(|(what, seen)| {
+        let more = seen - SHOWN;
+        format!("{what} at {more} more {}, which --report lists", if more == 1 { "place" } else { "places" })
+    }));
+    lines
+}
+
+/// A warning without its place, and without what is particular there.
+fn trouble(warning: &str) -> String {
+    let Some((before, after)) = warning.split_once(" near ") else { return warning.into() };
+    let said = after.split_once(']').and_then(|(_, said)| said.split(':').next());
+    format!("{before}{}", said.filter(|s| s.starts_with(" is ")).unwrap_or_default())
 }
 
 /// Where a mesh goes, known to be writable.
@@ -244,5 +259,33 @@ fn unwritable(error: mesh_io::Error) -> Failure {
     match error {
         mesh_io::Error::Unrepresentable { .. } => Failure::impossible(error),
         _ => Failure::unwritable(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three of a kind are printed, whatever comes between them; the rest is a number.
+    #[test]
+    fn many_warnings_of_one_kind_end_in_a_line() {
+        let small =
+            |i: usize| format!("a ball of radius 1 does not fit near [{i}, 0, 0]: one of radius 0.{i} is used there");
+        let field = |i: usize| format!("the blend near [0, {i}, 0] is made as a field: the linkages cross {i} times");
+        let warnings = |counts: [usize; 2]| {
+            let kinds = (0..counts[0]).map(small).chain((0..counts[1]).map(field));
+            [kinds.collect::<Vec<_>>(), vec!["the solids are apart".into()]].concat()
+        };
+        assert_eq!(told(&warnings([3, 3])), warnings([3, 3]));
+        let lines = told(&warnings([4, 9]));
+        assert_eq!(lines[..7], warnings([3, 3]));
+        assert_eq!(
+            lines[7..],
+            [
+                "a ball of radius 1 does not fit at 1 more place, which --report lists",
+                "the blend is made as a field at 6 more places, which --report lists"
+            ]
+        );
+        assert_eq!(told(&vec!["the same".to_string(); 5]).len(), 4);
     }
 }

@@ -92,6 +92,9 @@ const RETRIES: i32 = 10;
 /// # Errors
 /// [`Error`].
 pub fn remesh(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, Error> {
+    if part.mesh.faces.is_empty() {
+        return Err(Error::Region("the mesh has no face, so there is nothing to remesh or smooth".into()));
+    }
     extent::check(std::slice::from_ref(part))?;
     let mut report = Report::new("remesh", vec![Counts::of("", &part.mesh)]);
     let mut mesh = report

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use lmc_tessellate::{Error, Params, Rim, Transition, suggested_cell, tessellate};
 use mesh_core::{Connected, Faces, TriMesh, VertexId, Watch, boundary_loops, centroid, shapes, topology, volume};
+use proptest::prelude::*;
 
 /// The faces whose centroid passes.
 fn part(mesh: &TriMesh, keep: impl Fn(DVec3) -> bool) -> Connected<TriMesh> {
@@ -128,4 +129,28 @@ fn linear_placement_converges() {
     };
     let errors = [0.08, 0.04, 0.02].map(worst);
     assert!(errors[0] / errors[1] > 3.0 && errors[1] / errors[2] > 3.0, "{errors:?}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Two or three caps of any height, turned anyhow, rejoin to the ball.
+    #[test]
+    fn any_caps_rejoin_to_the_ball(
+        heights in prop::array::uniform3(0.35f64..0.8),
+        third in any::<bool>(),
+        turn in prop::array::uniform3(-3.0f64..3.0),
+    ) {
+        let turn = glam::DQuat::from_scaled_axis(turn.into());
+        let axes = [DVec3::X, DVec3::new(-0.5, 0.75f64.sqrt(), 0.0), DVec3::new(-0.5, -(0.75f64.sqrt()), 0.0)];
+        // Caps of three must not share a vertex: 60 degrees from axis to axis leave half the angle each.
+        let least = if third { 0.6 } else { 0.0 };
+        let caps = axes.iter().zip(heights).take(if third { 3 } else { 2 });
+        let caps: Vec<_> = caps.map(|(axis, h)| (turn * *axis, h.max(least))).collect();
+        let keep = |p: DVec3| caps.iter().any(|(axis, h)| p.normalize().dot(*axis) > *h);
+        let (mesh, made) = rejoin(&shapes::icosphere(1.0, 4), keep, ball, None).unwrap();
+        assert_whole(&mesh, 0);
+        prop_assert!(made.mesh.positions.iter().all(|p| ball(*p).abs() < 1e-4));
+        prop_assert!((volume(&mesh) - 4.0 * std::f64::consts::PI / 3.0).abs() < 0.03, "{}", volume(&mesh));
+    }
 }

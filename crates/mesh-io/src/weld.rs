@@ -53,9 +53,11 @@ pub(crate) fn same_places(positions: &[DVec3]) -> Vec<u32> {
     let hashes: Vec<u64> = (0..positions.len() as u32).into_par_iter().map(|v| hash(key(v))).collect();
     // The low bits choose the slot.
     let share = |hash: u64| (hash >> 60) as usize % SHARES;
-    let mut ends = [0; SHARES];
-    hashes.iter().for_each(|&h| ends[share(h)] += 1);
-    let mut dealt: Vec<Vec<u32>> = ends.iter().map(|&n| Vec::with_capacity(n)).collect();
+    let mut sizes = [0; SHARES];
+    for &h in &hashes {
+        sizes[share(h)] += 1;
+    }
+    let mut dealt: Vec<Vec<u32>> = sizes.iter().map(|&n| Vec::with_capacity(n)).collect();
     for (v, &h) in hashes.iter().enumerate() {
         dealt[share(h)].push(v as u32);
     }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use mesh_core::{Connected, Faces, TriMesh, VertexId, VertexMap, Watch, shapes, volume};
+use proptest::prelude::*;
 use remesh::{Error, Fairing, Fairness, Flow, Frozen, Taubin, curvature_flow, fair, taubin};
 use std::f64::consts::{PI, TAU};
 
@@ -265,4 +266,40 @@ fn any_number_of_threads_gives_the_same_bits() {
         })
     };
     assert_eq!(on(1), on(3));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// What is held keeps its bits, and size is no matter: a power of two changes exponents only.
+    #[test]
+    fn smoothing_commutes_with_scaling_and_keeps_what_is_held(
+        roughness in 0.1f64..0.6,
+        seed in 0u64..1000,
+        power in -100i32..100,
+        above in -0.9f64..0.9,
+    ) {
+        let scale = 2f64.powi(power);
+        let blob = shapes::blob(1.0, 2, roughness, seed);
+        let mut large = blob.clone();
+        large.positions.iter_mut().for_each(|p| *p *= scale);
+        let (blob, large) = (connect(blob), connect(large));
+        let held = hold(&blob, |p| p.z > above);
+        let watch = Watch::default();
+        let smooth = |mesh: &Connected<TriMesh>, size: f64| {
+            let flow = Flow { time: 0.02 * size * size, steps: 2 };
+            let fairing = Fairing { fairness: Fairness::Biharmonic, ..Fairing::default() };
+            [
+                taubin(mesh, &held, &Taubin::default(), &watch).unwrap(),
+                curvature_flow(mesh, &held, &flow, &watch).unwrap(),
+                fair(mesh, &held, &fairing, &watch).unwrap(),
+            ]
+        };
+        for (small, large) in smooth(&blob, 1.0).into_iter().zip(smooth(&large, scale)) {
+            for ((p, q), at) in small.iter().zip(&large).zip(&blob.mesh().positions) {
+                prop_assert!((scale * *p - *q).length() <= 1e-9 * scale, "{} {}", p, q / scale);
+                prop_assert!(at.z <= above || p == at);
+            }
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use image::RgbImage;
 use mesh_core::{TriMesh, VertexId, Watch, shapes};
+use proptest::prelude::*;
 use render::{Color, Error, Ground, Params, Projection, Shading, Wireframe, picture};
 use std::f64::consts::PI;
 
@@ -161,5 +162,31 @@ fn degenerate_meshes_draw() {
             let params = Params { color, wireframe: Some(Wireframe::default()), ..studio() };
             assert_eq!(draw(&mesh, &params).dimensions(), (120, 120));
         }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Whatever hangs together how, of any size and colour: a picture, and the same one from any number of threads.
+    #[test]
+    fn any_soup_is_drawn(
+        points in prop::collection::vec(prop::array::uniform3(-1.0f64..1.0), 3..20),
+        corners in prop::collection::vec(prop::array::uniform3(0usize..20), 1..30),
+        power in -300i32..300,
+        view in prop::array::uniform3(-1.0f64..1.0),
+        color in prop::sample::select(vec![Color::Curvature, Color::Quality, Color::Zebra]),
+    ) {
+        let positions: Vec<DVec3> = points.iter().map(|p| 2f64.powi(power) * DVec3::from(*p)).collect();
+        let faces = corners.iter().map(|f| f.map(|v| (v % positions.len()) as u32)).collect::<Vec<_>>();
+        let mesh = TriMesh::from_arrays(positions, faces);
+        let params = Params { width: 24, height: 16, view: view.into(), color, ..studio() };
+        let [one, two] = [1, 2].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| picture(&mesh, &params, &Watch::default()))
+        });
+        let (one, two) = (one.unwrap(), two.unwrap());
+        prop_assert_eq!(one.dimensions(), (24, 16));
+        prop_assert!(one == two);
     }
 }

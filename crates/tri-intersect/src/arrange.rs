@@ -8,7 +8,7 @@ mod along;
 
 use crate::crossing::{Crossing, Meeting, cross};
 use crate::error::Error;
-use crate::predicate::{Feature, largest, rescaled, scale_for, scaled};
+use crate::predicate::{Feature, largest, rescaled, scale_for, scaled, vanishing};
 use along::{OnEdge, place, touched_place};
 use glam::DVec3;
 use mesh_core::{Adjacency, Connected, FaceId, Faces, HalfedgeId, TriMesh, VertexId, Watch};
@@ -32,6 +32,11 @@ pub(crate) struct Part<'a> {
 impl Part<'_> {
     pub(crate) fn triangle(&self, f: u32) -> [DVec3; 3] {
         self.mesh.corners(FaceId(f)).map(|v| self.points[v.index()])
+    }
+
+    /// Coordinates smaller than this count as zero, in model units.
+    pub(crate) fn vanishing(&self) -> f64 {
+        vanishing(self.scale)
     }
 
     fn ends(&self, edge: u32) -> [DVec3; 2] {

@@ -266,7 +266,10 @@ impl Flood<'_> {
         let samples =
             [(places[0], scaled[0]), (places[1], scaled[1]), (places[2], scaled[2]), (middle(places), middle(scaled))];
         for (place, p) in samples {
-            let ray = Bounds { min: place, max: DVec3::new(bounds.max.x.max(place.x), place.y, place.z) };
+            // What counts as zero is met by all that does.
+            let blur = DVec3::select(p.cmpeq(DVec3::ZERO), DVec3::splat(2.0 * part.vanishing()), DVec3::ZERO);
+            let far = DVec3::new(bounds.max.x.max(place.x), place.y, place.z);
+            let ray = Bounds { min: place - blur, max: far + blur };
             if !ray.overlaps(&bounds) {
                 return Class::Outside;
             }

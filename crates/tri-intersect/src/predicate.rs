@@ -124,6 +124,11 @@ pub(crate) fn rescaled(p: DVec3, scale: f64) -> DVec3 {
     DVec3::select(q.abs().cmplt(DVec3::splat(TINY)), DVec3::ZERO, q)
 }
 
+/// Coordinates smaller than this become zero by [`rescaled`], in the units of before.
+pub(crate) fn vanishing(scale: f64) -> f64 {
+    TINY / scale
+}
+
 /// The largest coordinate by size; NaN or infinite if one is.
 pub(crate) fn largest(points: &[DVec3]) -> f64 {
     let size = |p: &DVec3| if p.is_finite() { p.abs().max_element() } else { f64::INFINITY };

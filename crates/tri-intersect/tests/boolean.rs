@@ -224,6 +224,22 @@ fn any_scale() {
 }
 
 /// What cannot be done says where.
+/// Beside a solid of 2^100 times its size and more, all places of another are one; inside is inside all the same.
+#[test]
+fn a_speck_in_a_huge_solid_is_inside() {
+    for exponent in [20, 31, 100, 250, 300] {
+        let scale = 10f64.powi(exponent);
+        let mut huge = shapes::cylinder(1.0, 2.0, 16, 4);
+        huge.positions.iter_mut().for_each(|p| *p *= scale);
+        let speck = moved(shapes::cylinder(0.4, 3.0, 12, 3), DVec3::Z);
+        assert_eq!(run(&huge, &speck, Operation::Union).unwrap().mesh, huge, "{exponent}");
+        assert_eq!(run(&speck, &huge, Operation::Intersection).unwrap().mesh, speck, "{exponent}");
+        assert!(matches!(run(&speck, &huge, Operation::Difference), Err(Error::Empty(_))), "{exponent}");
+        let outside = moved(speck, DVec3::new(0.0, 4.0 * scale, 0.0));
+        assert!(matches!(run(&huge, &outside, Operation::Intersection), Err(Error::Empty(_))), "{exponent}");
+    }
+}
+
 #[test]
 fn refusals_have_a_place() {
     let cube = shapes::cuboid(DVec3::ONE);

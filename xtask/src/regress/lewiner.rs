@@ -1,5 +1,6 @@
 //! Marching cubes on random fields, against scikit-image's Lewiner through `lewiner.py`.
 
+use super::reference::python;
 use crate::{Fault, root};
 use glam::DVec3;
 use lmc_tessellate::isosurface;
@@ -34,7 +35,7 @@ pub fn run() -> Result<usize, Fault> {
     let folder = tempfile::tempdir()?;
     let file = folder.path().join("fields.json");
     fs::write(&file, Value::from(fields.clone()).to_string())?;
-    let output = Command::new("python3").arg(root().join("xtask/lewiner.py")).arg(&file).output()?;
+    let output = Command::new(python()?).arg(root().join("xtask/lewiner.py")).arg(&file).output()?;
     let text = String::from_utf8_lossy(&output.stdout);
     if text.lines().count() != fields.len() {
         return Err(format!(

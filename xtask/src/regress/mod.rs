@@ -7,6 +7,7 @@
 //! | `cluster.rs` | polyhedra rounded by clusters |
 //! | `compositions.rs` | random compositions of open pieces |
 //! | `lewiner.rs` | marching cubes on random fields |
+//! | `measures.rs` | normals, curvature, distances, booleans beside libigl's |
 //! | `recipes.rs` | recipes replayed |
 //! | `join.rs` | one job through the library |
 //! | `pairs.rs`, `pose.rs` | pairs of real models in random poses |
@@ -20,6 +21,7 @@ mod compositions;
 mod golden;
 mod join;
 mod lewiner;
+mod measures;
 mod nasty;
 mod pairs;
 mod pose;
@@ -36,6 +38,7 @@ use threads::Threads;
 
 /// What to run.
 #[derive(clap::Args, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag that can be typed")]
 pub struct Options {
     /// Approve what the cases give now
     #[arg(long)]
@@ -46,13 +49,19 @@ pub struct Options {
     /// Only a few of the pairs and compositions, at one radius, and no tables
     #[arg(long, requires = "models")]
     quick: bool,
-    /// Have every result checked by libigl through Python, and marching cubes by scikit-image
+    /// Of the models, only the broken files, and nothing else
+    #[arg(long, requires = "models", conflicts_with_all = ["bless", "quick", "reference"])]
+    broken: bool,
+    /// Have every result and measure checked by libigl through Python, and marching cubes by scikit-image
     #[arg(long)]
     reference: bool,
 }
 
 /// Runs all that is asked for and fails if anything is wrong.
 pub fn run(options: &Options) -> Result<(), Fault> {
+    if let Some(models) = options.models.as_ref().filter(|_| options.broken) {
+        return verdict(nasty::run(&models.join("nasty"))?);
+    }
     let mut reference = if options.reference { Some(Reference::new()?) } else { None };
     let mut threads = Threads::new()?;
     let mut faults = cluster::run(options.bless, &mut reference, &mut threads)?;
@@ -60,13 +69,17 @@ pub fn run(options: &Options) -> Result<(), Fault> {
     faults += cases(options.bless, &mut reference, &mut threads)?;
     threads.finish()?;
     if options.reference {
-        faults += lewiner::run()?;
+        faults += measures::run()? + lewiner::run()?;
     }
     if let Some(models) = &options.models {
         faults += nasty::run(&models.join("nasty"))?;
         faults += compositions::run(models, options.quick, &mut reference)?;
         faults += pairs::run(models, options.quick, &mut reference)?;
     }
+    verdict(faults)
+}
+
+fn verdict(faults: usize) -> Result<(), Fault> {
     if faults == 0 { Ok(()) } else { Err(format!("regress found {faults} faults").into()) }
 }
 

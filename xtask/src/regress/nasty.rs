@@ -1,44 +1,64 @@
-//! Broken files through the command line: whatever they hold, no panic, no hang, no output on failure.
+//! Broken files through the command line: whatever they hold, no panic, no hang, a valid result or a sentence and no file.
 
 use crate::{Fault, binary};
-use std::fs;
+use mesh_core::{TriMesh, validate};
+use std::fmt::Write;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A verb may take no longer than this on any of the files.
-const PATIENCE: Duration = Duration::from_secs(10);
+/// What is done with every file, IN, and how many seconds it may take.
+const JOBS: [(&str, u64); 15] = [
+    ("info IN", 10),
+    ("convert IN -o out.ply", 10),
+    ("convert IN -o out.ply --weld 0.01% --orient --split", 10),
+    ("features IN", 30),
+    ("render IN -o out.png --size 64", 10),
+    ("union IN block.off -o out.ply", 10),
+    ("difference block.off IN -o out.ply --radius 1%", 30),
+    ("cut IN -o out.ply --plane 0,0,0,1,0.2,0.1", 10),
+    ("remesh IN -o out.ply --edge-length 4%", 30),
+    ("remesh IN -o out.ply --smooth taubin", 10),
+    ("blend IN -o out.ply --radius 1%", 30),
+    ("compose IN -o out.ply", 30),
+    ("detail IN -o out.ply --target near=0,0,0,0.3 --source near=1,0,0,0.5", 30),
+    ("cluster IN -o out.ply", 60),
+    ("run job.toml", 10),
+];
 
-/// Runs every file of a folder through three verbs and counts the faults.
+/// Runs every file of a folder through every verb and counts the faults.
 pub fn run(folder: &Path) -> Result<usize, Fault> {
     let program = binary("fusion-cli")?;
-    let work = tempfile::tempdir()?;
-    let block = work.path().join("block.off");
-    fs::write(&block, BLOCK)?;
+    let bench = tempfile::tempdir()?;
+    fs::write(bench.path().join("block.off"), BLOCK)?;
     let mut files = vec![];
     crate::walk(folder, &mut files);
     let (mut faults, mut accepted) = (0, 0);
+    let mut slowest = [Duration::ZERO; JOBS.len()];
     for file in &files {
-        let output = work.path().join("out.ply");
-        let verbs: [(&str, Vec<&Path>); 3] = [
-            ("info", vec![file]),
-            ("convert", vec![file, Path::new("-o"), &output]),
-            ("union", vec![file, &block, Path::new("-o"), &output]),
-        ];
-        for (verb, arguments) in verbs {
-            let verdict = watch(Command::new(&program).arg(verb).args(arguments))?;
-            let left: Vec<PathBuf> =
-                fs::read_dir(work.path())?.flatten().map(|e| e.path()).filter(|p| *p != block).collect();
+        let file = file.canonicalize()?;
+        fs::write(bench.path().join("job.toml"), recipe(&file)?)?;
+        let before = listed(bench.path())?;
+        for ((line, seconds), slowest) in JOBS.into_iter().zip(&mut slowest) {
+            let start = Instant::now();
+            let words = line.split(' ').map(|w| if w == "IN" { file.as_os_str() } else { w.as_ref() });
+            let mut command = Command::new(&program);
+            let said = tempfile::NamedTempFile::new()?;
+            command.args(words).current_dir(bench.path()).stderr(said.reopen()?);
+            let verdict = watch(&mut command, Duration::from_secs(seconds))?;
+            *slowest = start.elapsed().max(*slowest);
+            let left: Vec<PathBuf> = listed(bench.path())?.into_iter().filter(|p| !before.contains(p)).collect();
             let fault = match verdict {
-                None => Some(format!("took over {} s", PATIENCE.as_secs())),
-                Some(0) => None,
-                Some(3..=6) if left.is_empty() => None,
-                Some(3..=6) => Some(format!("failed but left {}", left[0].display())),
+                None => Some(format!("took over {seconds} s")),
+                Some(0) => unsound(line, &file, &bench.path().join("out.ply")),
+                Some(3..=5) if !left.is_empty() => Some(format!("failed but left {}", left[0].display())),
+                Some(3..=5) => unsaid(said.reopen()?)?,
                 Some(code) => Some(format!("ended with code {code}")),
             };
             accepted += usize::from(verdict == Some(0));
             if let Some(fault) = fault {
-                println!("regress: {verb} {}: {fault}", file.display());
+                println!("regress: {} on {}: {fault}", line.replace("IN ", ""), file.display());
                 faults += 1;
             }
             for path in left {
@@ -46,25 +66,69 @@ pub fn run(folder: &Path) -> Result<usize, Fault> {
             }
         }
     }
-    println!("regress: {} broken files, {accepted} of {} runs accepted, {faults} faults", files.len(), 3 * files.len());
+    let runs = JOBS.len() * files.len();
+    println!("regress: {} broken files, {accepted} of {runs} runs accepted, {faults} faults", files.len());
+    for ((line, _), slowest) in JOBS.into_iter().zip(slowest) {
+        println!("regress: {line}: {:.1} s at most", slowest.as_secs_f64());
+    }
     Ok(faults)
 }
 
+fn listed(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
+    Ok(fs::read_dir(folder)?.flatten().map(|e| e.path()).collect())
+}
+
+/// What is wrong with what a job wrote, read back.
+fn unsound(line: &str, input: &Path, output: &Path) -> Option<String> {
+    if !line.contains("out.ply") && !line.starts_with("run") {
+        return None;
+    }
+    let made = match mesh_io::read(output) {
+        Ok(made) => made.mesh,
+        Err(error) => return Some(format!("wrote what cannot be read: {error}")),
+    };
+    if line == "convert IN -o out.ply" {
+        let bits = |m: &TriMesh| -> Vec<_> { m.positions.iter().map(|p| p.to_array().map(f64::to_bits)).collect() };
+        let taken = mesh_io::read(input).map(|m| m.mesh);
+        let faithful = taken.is_ok_and(|taken| made.faces == taken.faces && bits(&made) == bits(&taken));
+        return (!faithful).then(|| "is not faithful".into());
+    }
+    let defects = validate(&made);
+    let sound = defects.is_manifold() && defects.non_finite.is_empty();
+    (!sound).then(|| format!("wrote what is not valid: {defects}"))
+}
+
+/// A failure must be explained.
+fn unsaid(said: File) -> Result<Option<String>, Fault> {
+    let text = std::io::read_to_string(said)?;
+    Ok((!text.contains("error: ") || text.len() < 25).then(|| format!("failed with no more than {text:?}")))
+}
+
 /// The exit code, −1 for a signal, `None` when it took too long and was stopped.
-fn watch(command: &mut Command) -> Result<Option<i32>, Fault> {
-    let mut child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
+fn watch(command: &mut Command, patience: Duration) -> Result<Option<i32>, Fault> {
+    let mut child = command.stdin(Stdio::null()).stdout(Stdio::null()).spawn()?;
     let start = Instant::now();
     loop {
         if let Some(status) = child.try_wait()? {
             return Ok(Some(status.code().unwrap_or(-1)));
         }
-        if start.elapsed() > PATIENCE {
+        if start.elapsed() > patience {
             child.kill()?;
             child.wait()?;
             return Ok(None);
         }
         std::thread::sleep(Duration::from_millis(2));
     }
+}
+
+/// A recipe that joins the file to the block.
+fn recipe(file: &Path) -> Result<String, Fault> {
+    let mut text = String::from("version = 1\noutput = \"out.ply\"\n");
+    for (name, mesh) in [("file", file), ("block", Path::new("block.off"))] {
+        writeln!(text, "[[part]]\nname = {name:?}\nmesh = {:?}", mesh.to_string_lossy())?;
+    }
+    text.push_str("[[boolean]]\noperation = \"union\"\n");
+    Ok(text)
 }
 
 /// A unit cube.

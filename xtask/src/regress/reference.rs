@@ -4,7 +4,7 @@ use crate::{Fault, root};
 use mesh_core::TriMesh;
 use std::fmt::Write;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Meshes waiting for a verdict.
@@ -34,7 +34,7 @@ impl Reference {
             return Ok(vec![]);
         }
         let script = root().join("xtask/reference.py");
-        let output = Command::new("python3").arg(script).args(waiting.iter().map(|(_, path)| path)).output()?;
+        let output = Command::new(python()?).arg(script).args(waiting.iter().map(|(_, path)| path)).output()?;
         let text = String::from_utf8_lossy(&output.stdout);
         let verdicts: Vec<_> = text.lines().filter_map(|line| line.split_once('\t')).map(|(_, v)| v).collect();
         if verdicts.len() != waiting.len() {
@@ -45,6 +45,32 @@ impl Reference {
         }
         Ok(waiting.into_iter().zip(verdicts).map(|((name, _), v)| (name, v.to_string())).collect())
     }
+}
+
+/// Python with the packages of `xtask/requirements.txt`, in an environment of its own that is made if need be.
+pub fn python() -> Result<PathBuf, Fault> {
+    let folder = root().join("target/regress/python");
+    let program = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    let wanted = root().join("xtask/requirements.txt");
+    let installed = folder.join("requirements.txt");
+    if fs::read(&installed).ok() != Some(fs::read(&wanted)?) {
+        println!("regress: installing {} into {}", wanted.display(), folder.display());
+        let run = |program: &Path, arguments: &[&Path]| match Command::new(program).args(arguments).status() {
+            Ok(status) if status.success() => Ok(()),
+            other => Err(format!("{} {arguments:?} failed: {other:?}", program.display())),
+        };
+        run("python3".as_ref(), &["-m".as_ref(), "venv".as_ref(), &folder])?;
+        run(
+            &program,
+            &["-m", "pip", "install", "--quiet", "--requirement"]
+                .map(Path::new)
+                .into_iter()
+                .chain([&*wanted])
+                .collect::<Vec<_>>(),
+        )?;
+        fs::copy(&wanted, &installed)?;
+    }
+    Ok(program)
 }
 
 /// A mesh as OFF with every digit, written without the crates under test.

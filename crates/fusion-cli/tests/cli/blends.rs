@@ -168,6 +168,43 @@ fn a_ball_that_does_not_fit_shrinks_or_stops() {
     assert_eq!(values, [1.0, 0.1, 0.0]);
 }
 
+/// Of many places with one trouble three are printed, and how many more there are; the report has all.
+#[test]
+fn many_warnings_of_one_kind_are_counted() {
+    let bench = Bench::new();
+    let row = |shift: [f64; 3]| {
+        let cubes: Vec<String> =
+            (0..4).map(|i| cube([shift[0] + 3.0 * f64::from(i), shift[1], shift[2]], 1.0)).collect();
+        let lines = |from: usize, to: usize| cubes.iter().map(move |c| c.lines().skip(from).take(to - from));
+        let points: Vec<&str> = lines(2, 10).flatten().collect();
+        let mut text = format!("OFF\n32 48 0\n{}\n", points.join("\n"));
+        for (i, faces) in lines(10, 22).enumerate() {
+            for face in faces {
+                let ids = face.split(' ').skip(1).map(|v| (v.parse::<usize>().unwrap() + 8 * i).to_string());
+                writeln!(text, "3 {}", ids.collect::<Vec<_>>().join(" ")).unwrap();
+            }
+        }
+        text
+    };
+    bench.file("row.off", &row([0.0; 3]));
+    bench.file("beside.off", &row([0.4, 0.3, 0.2]));
+    let line = "union row.off beside.off -o out.off --radius 0.3 --report r.json";
+    let run = bench.run(line).expect(0);
+    let report = json(&bench.read("r.json"));
+    let warnings: Vec<&str> = report["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();
+    let said: Vec<&str> = run.stderr.lines().collect();
+    assert!(warnings.len() > 4 && said.len() == 4, "{warnings:?} {said:?}");
+    for (said, warning) in said.iter().zip(&warnings).take(3) {
+        assert_eq!(*said, format!("warning: {warning}"));
+    }
+    let more = warnings.len() - 3;
+    assert_eq!(
+        said[3],
+        format!("warning: a ball of radius 0.3 does not fit at {more} more places, which --report lists")
+    );
+    assert!(bench.run(&format!("{line} --quiet")).expect(0).stderr.is_empty());
+}
+
 #[test]
 fn wrong_options_say_what_is_right() {
     let bench = bench();

@@ -7,6 +7,7 @@ mod corruption;
 mod details;
 mod drawings;
 mod exit_codes;
+mod memory;
 mod recipes;
 mod sharpens;
 mod support;

@@ -1,6 +1,7 @@
 //! The pipelines from outside. One program for all, since linking one takes seconds and a hundred megabytes.
 
 mod analytic;
+mod any_input;
 mod compose;
 mod corners;
 mod details;
