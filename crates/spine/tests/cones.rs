@@ -8,7 +8,8 @@ use spine::{BlendCurve, Convexity, Params, roll};
 proptest! {
     #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Every centre is the radius away from the lid, and its foot there right above; the other foot is on the side, square to it.
+    /// Every centre is the radius away from the lid, and its foot there above it, to a twentieth of the radius at the rim's
+    /// corners, where linkages are faired; the other foot is on the side, no nearer than the radius.
     #[test]
     fn the_ball_touches_lid_and_side(
         lower in 0.5f64..1.6,
@@ -35,7 +36,7 @@ proptest! {
             prop_assert!((sample.center.z - (top - radius)).abs() <= 1e-8 * radius, "{}", sample.center.z);
             let feet = sample.feet.map(|f| f.point);
             let lid = usize::from((feet[1].z - top).abs() < (feet[0].z - top).abs());
-            prop_assert!(feet[lid].distance(sample.center + radius * DVec3::Z) <= 1e-3 * radius, "{}", feet[lid]);
+            prop_assert!(feet[lid].distance(sample.center + radius * DVec3::Z) <= 0.05 * radius, "{}", feet[lid]);
             prop_assert!(feet[1 - lid].distance(sample.center) >= (1.0 - 1e-9) * radius);
         }
     }
