@@ -41,6 +41,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "detail-transfer",
             "edge-cluster",
             "render",
+            "mimalloc",
             "serde",
             "serde_json",
             "toml",

@@ -5,12 +5,13 @@ use crate::affine::Affine;
 use crate::constraint::Constraint;
 use crate::dense;
 use crate::error::Error;
-use crate::far::{self, Plan, Translations};
+use crate::far::Plan;
 use crate::iterate::{self, Rescue};
 use crate::kernel::Kernel;
 use crate::params::{Params, Solver};
 use crate::patches::Patches;
 use crate::sum::Sum;
+use crate::translations::{Translations, degree};
 use glam::DVec3;
 
 /// Up to this many pairs of a centre and a point all are summed, which is faster than tables of expansions and their use.
@@ -112,7 +113,7 @@ impl Field {
 
     fn expanded_values(&self, points: &[DVec3], out: &mut [f64]) {
         let (centres, at) = (self.sum.centres(), self.normalised(points));
-        let translations = Translations::new(self.kernel, far::degree(self.kernel));
+        let translations = Translations::new(self.kernel, degree(self.kernel));
         let sums = Plan::new(&translations, &centres, Some(&at)).sums(&self.sum.weights);
         let [c, x, y, z] = self.sum.affine;
         for ((v, sum), p) in out.iter_mut().zip(sums).zip(at) {

@@ -6,10 +6,11 @@ use crate::admit::System;
 use crate::affine::Affine;
 use crate::chebyshev::MOST;
 use crate::error::Error;
-use crate::far::{Plan, Translations, degree};
+use crate::far::Plan;
 use crate::kernel::{Kernel, Radial, with_kernel};
 use crate::screen::Screen;
 use crate::sum::Sum;
+use crate::translations::{Translations, degree};
 use std::cell::OnceCell;
 
 /// Corrections after which the system is taken to be beyond working precision.

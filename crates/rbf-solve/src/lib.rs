@@ -26,7 +26,7 @@
 //! | `sum.rs` | values and gradients of a sum of kernels, by vectors and threads |
 //! | `dense.rs` | assembling and factoring the whole system |
 //! | `iterate.rs`, `order.rs`, `screen.rs` | conjugate gradients for many constraints, and what makes them converge |
-//! | `far.rs`, `octree.rs`, `meet.rs`, `chebyshev.rs` | sums over many centres at many points |
+//! | `far.rs`, `translations.rs`, `octree.rs`, `meet.rs`, `chebyshev.rs` | sums over many centres at many points |
 //! | `field.rs`, `patches.rs` | `Field`: fit, value, gradient; the same at many points along a surface |
 //! | `thin.rs` | fewer constraints far from the boundary |
 //! | `wide.rs` | loops for the machine's widest vectors |
@@ -52,6 +52,7 @@ mod patches;
 mod screen;
 mod sum;
 mod thin;
+mod translations;
 mod wide;
 
 pub use constraint::Constraint;
