@@ -46,7 +46,7 @@ pub struct Options {
     /// Also run the pairs of fixtures/pairs.toml, random compositions and the broken files found in this folder
     #[arg(long, value_name = "DIR")]
     models: Option<PathBuf>,
-    /// Only a few of the pairs and compositions, at one radius, and no tables
+    /// Only a few of the pairs and compositions, at one radius, few verbs on each broken file, and no tables
     #[arg(long, requires = "models")]
     quick: bool,
     /// Of the models, only the broken files, and nothing else
@@ -60,7 +60,7 @@ pub struct Options {
 /// Runs all that is asked for and fails if anything is wrong.
 pub fn run(options: &Options) -> Result<(), Fault> {
     if let Some(models) = options.models.as_ref().filter(|_| options.broken) {
-        return verdict(nasty::run(&models.join("nasty"))?);
+        return verdict(nasty::run(&models.join("nasty"), false)?);
     }
     let mut reference = if options.reference { Some(Reference::new()?) } else { None };
     let mut threads = Threads::new()?;
@@ -72,7 +72,7 @@ pub fn run(options: &Options) -> Result<(), Fault> {
         faults += measures::run()? + lewiner::run()?;
     }
     if let Some(models) = &options.models {
-        faults += nasty::run(&models.join("nasty"))?;
+        faults += nasty::run(&models.join("nasty"), options.quick)?;
         faults += compositions::run(models, options.quick, &mut reference)?;
         faults += pairs::run(models, options.quick, &mut reference)?;
     }
