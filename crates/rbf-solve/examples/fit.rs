@@ -1,7 +1,6 @@
 //! Fits a field to constraints from a file and evaluates it at points from another: `fit KERNEL CONSTRAINTS POINTS`, the
 //! kernel `biharmonic` or `triharmonic`, the files 64-bit floats, four for a constraint (place and value), three for a
-//! point. Prints seconds, the residual, and how far the
-//! first thousand values are from the sum over all centres, as JSON.
+//! point. Prints seconds, the residual, and how far the first thousand values are from the sum over all centres, as JSON.
 
 use glam::DVec3;
 use rbf_solve::{Constraint, Field, Kernel, Params, Solver};
