@@ -77,8 +77,12 @@ fn face_in_full_turn(p: &[u32], q: &[u32], faces: &[[u32; 3]]) -> Option<[u32; 3
     (changes == 2).then(|| faces[(start + p.len().min(q.len()) / 2) % k])
 }
 
+/// How many triangles a polygon's triangulation may be sought among: some seconds. A thousand openings in one gap would
+/// take hours.
+const MOST: usize = 400_000_000;
+
 /// The cheapest triangulation of a closed polygon by its own diagonals, of which `may_join` (by place in the polygon)
-/// names the admissible ones. `None` if there is none.
+/// names the admissible ones. `None` if there is none, or if it were sought among more than [`MOST`] triangles.
 ///
 /// Interval dynamic programming; O(d·k) time for d admissible diagonals, k at each vertex.
 pub(crate) fn polygon(
@@ -102,6 +106,9 @@ pub(crate) fn polygon(
             ends.map(|end| Span { end, cost: if end == i + 1 { 0.0 } else { f64::INFINITY }, apex: i }).collect()
         })
         .collect();
+    if spans.iter().map(|s| s.len() * s.len()).sum::<usize>() > MOST {
+        return None;
+    }
     // Later starts first: the parts of a span start at it or after it, and end before it.
     for i in (0..n).rev() {
         for s in 0..spans[i].len() {
@@ -193,5 +200,12 @@ mod tests {
             assert_eq!(faces.iter().map(|&t| cost(t)).sum::<f64>(), brute(&corners, &cost));
         }
         assert_eq!(polygon(&[0, 1, 2, 3], |_, _| false, &cost), None);
+    }
+
+    /// Soups of a thousand openings took hours.
+    #[test]
+    fn polygons_that_would_take_hours_are_left_alone() {
+        let corners: Vec<u32> = (0..2000).collect();
+        assert_eq!(polygon(&corners, |_, _| true, &|_| panic!("begun")), None);
     }
 }

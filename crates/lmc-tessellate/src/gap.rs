@@ -107,15 +107,14 @@ pub(crate) fn fill(group: &[usize], rims: usize, all: &Curves) -> Result<Vec<[u3
         return Err(Error::Leak { rim: 0, at: here(group[0]) });
     }
     let longest = curves.iter().flat_map(|c| sides(c)).map(|[a, b]| all.length(a, b)).fold(0.0, f64::max);
-    let mut reach = 4.0 * all.cell + longest;
-    for _ in 0..4 {
-        let made = if curves.len() == 2 { all.strip(curves[0], curves[1], reach) } else { all.patch(&curves, reach) };
-        if let Some(faces) = made {
-            return Ok(faces);
-        }
-        reach *= 3.0;
-    }
-    Err(Error::Gap { rim: group[0], at: here(group[0]) })
+    let mut reaches = std::iter::successors(Some(4.0 * all.cell + longest), |r| Some(3.0 * r)).take(4);
+    let made = if let [p, q] = curves[..] {
+        reaches.find_map(|reach| all.strip(p, q, reach))
+    } else {
+        let corners = all.bridged(&curves);
+        reaches.find_map(|reach| all.patch(&corners, &curves, reach))
+    };
+    made.ok_or(Error::Gap { rim: group[0], at: here(group[0]) })
 }
 
 fn sides(curve: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
@@ -172,28 +171,37 @@ impl Curves<'_> {
         best.map(|b| b.1)
     }
 
-    /// Any number of curves: joined to one polygon by bridges between the nearest, which is triangulated at least cost.
-    fn patch(&self, curves: &[&[u32]], reach: f64) -> Option<Vec<[u32; 3]>> {
-        let mut polygon_of = curves[0].to_vec();
-        let mut left: Vec<&[u32]> = curves[1..].to_vec();
-        while !left.is_empty() {
-            let mut best = (0, 0, 0, f64::INFINITY);
-            for (k, curve) in left.iter().enumerate() {
-                let (i, j, d) = self.nearest(&polygon_of, curve);
-                if d < best.3 {
-                    best = (k, i, j, d);
+    /// Any number of curves as one polygon, by bridges between the nearest of them, each passed twice.
+    fn bridged(&self, curves: &[&[u32]]) -> Vec<u32> {
+        // What is left, with the nearest vertex of the polygon, the place nearest to it, and how far they are apart.
+        let link = |from: &[u32], to: &[u32]| {
+            let (i, j, distance) = self.nearest(from, to);
+            (from[i], j, distance)
+        };
+        let mut corners = curves[0].to_vec();
+        let mut left: Vec<_> = curves[1..].iter().map(|&c| (c, link(curves[0], c))).collect();
+        while let Some(k) = (0..left.len()).min_by(|&a, &b| left[a].1.2.total_cmp(&left[b].1.2)) {
+            let (curve, (vertex, place, _)) = left.remove(k);
+            // Round the polygon to its end of the bridge, across, round the curve and back across.
+            let end = corners.iter().position(|&v| v == vertex).unwrap_or(0);
+            corners.rotate_left(end);
+            corners.push(corners[0]);
+            corners.extend(curve.iter().cycle().skip(place).take(curve.len() + 1));
+            for (other, best) in &mut left {
+                let new = link(curve, other);
+                if new.2 < best.2 {
+                    *best = new;
                 }
             }
-            let curve = left.remove(best.0);
-            // Round the polygon to its end of the bridge, across, round the curve and back across.
-            polygon_of.rotate_left(best.1);
-            polygon_of.push(polygon_of[0]);
-            polygon_of.extend(curve.iter().cycle().skip(best.2).take(curve.len() + 1));
         }
+        corners
+    }
+
+    /// The polygon triangulated at least cost.
+    fn patch(&self, corners: &[u32], curves: &[&[u32]], reach: f64) -> Option<Vec<[u32; 3]>> {
         let mut bordering: Vec<[u32; 2]> =
             curves.iter().flat_map(|c| sides(c)).map(|[a, b]| [a.min(b), a.max(b)]).collect();
         bordering.sort_unstable();
-        let corners = &polygon_of;
         let may_join = |i: usize, j: usize| {
             let e = [corners[i].min(corners[j]), corners[i].max(corners[j])];
             self.length(e[0], e[1]) <= reach

@@ -76,8 +76,7 @@ pub fn tessellate(rims: &[Rim], field: &impl Field, params: &Params, watch: &Wat
     let normals = normals(&zero_set);
     smooth(&mut zero_set, &trimmed.borders, &normals, field, grid.size);
     let groups = groups(&zero_set, &samples, &trimmed, params.gap * grid.size);
-    watch.step("tessellate", 0.5)?;
-    let (mesh, starts) = assemble(rims, &zero_set, &normals, &trimmed, &groups, grid.size)?;
+    let (mesh, starts) = assemble(rims, &zero_set, &normals, &trimmed, &groups, grid.size, watch)?;
     check(&mesh, &starts)?;
     Ok(Transition { mesh, starts, cells: surface.cells.len() })
 }
@@ -134,6 +133,7 @@ fn assemble(
     trimmed: &Trimmed,
     groups: &[Vec<usize>],
     cell: f64,
+    watch: &Watch,
 ) -> Result<(TriMesh, Vec<u32>), Error> {
     let mut mesh = TriMesh::default();
     let (mut starts, mut curves, mut directions) = (vec![], vec![], vec![]);
@@ -169,7 +169,8 @@ fn assemble(
     let taken = chords(&mesh.faces, &on_border);
     let all = Curves { positions: &mesh.positions, normals: &directions, closed: &curves, taken: &taken, cell };
     let mut faces = vec![];
-    for group in groups {
+    for (i, group) in groups.iter().enumerate() {
+        watch.step("tessellate", 0.5 + 0.5 * i as f64 / groups.len() as f64)?;
         faces.extend(fill(group, rims.len(), &all)?);
     }
     mesh.faces.extend(faces.into_iter().map(|t| t.map(VertexId)));

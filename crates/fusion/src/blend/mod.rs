@@ -363,8 +363,10 @@ fn distinct(rails: &[Option<Rail>], step: f64) -> Vec<bool> {
 fn check(sewn: &sew::Sewn, watch: &Watch) -> Result<(), Trouble> {
     Connected::new(&sewn.mesh).map_err(Trouble::not_manifold("the blend pinches"))?;
     let new: Vec<FaceId> = (sewn.first_new_face.0..sewn.mesh.face_count() as u32).map(FaceId).collect();
-    let hits = tri_intersect::self_intersections_among(&sewn.mesh, &new, watch)
-        .map_err(|_| Trouble::at("the blend cannot be checked", vec![]))?;
+    let hits = tri_intersect::self_intersections_among(&sewn.mesh, &new, watch).map_err(|error| match error {
+        tri_intersect::Error::Cancelled(c) => Trouble::from(c),
+        _ => Trouble::at("the blend cannot be checked", vec![]),
+    })?;
     if hits.is_empty() {
         return Ok(());
     }

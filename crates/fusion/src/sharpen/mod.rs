@@ -158,7 +158,10 @@ fn sharpen_one(mesh: &Connected<TriMesh>, at: DVec3, params: &Params, watch: &Wa
     let edge = Edge::between(&rim)?;
     let (made, origins, first_new) = put_in(mesh, &rounding, &rim, &edge);
     let new: Vec<FaceId> = (first_new..made.face_count()).map(FaceId::from).collect();
-    let hits = tri_intersect::self_intersections_among(&made, &new, watch).map_err(|_| Refusal::Meets { at })?;
+    let hits = tri_intersect::self_intersections_among(&made, &new, watch).map_err(|error| match error {
+        tri_intersect::Error::Cancelled(c) => Error::from(c),
+        _ => Refusal::Meets { at }.into(),
+    })?;
     if let Some(pair) = hits.first() {
         return Err(Refusal::Meets { at: centroid(made.triangle(pair[0])) }.into());
     }

@@ -2,6 +2,7 @@
 
 mod analytic;
 mod any_input;
+mod cancelled;
 mod compose;
 mod corners;
 mod details;

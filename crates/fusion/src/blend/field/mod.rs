@@ -30,6 +30,7 @@ use super::sew::sew;
 use super::sketch::{Drawing, Page};
 use super::trouble::Trouble;
 use super::{Blended, Error, Overlap, Params, Radii, check};
+use ball::target;
 use glam::DVec3;
 use level::level_curves;
 use mark::scalar;
@@ -62,6 +63,8 @@ fn is_arc(params: &Params) -> bool {
     matches!(params.profile, Profile::Arc) && params.profile_at.is_empty() && params.reach.is_none()
 }
 
+/// At how many places of the curves a ball is looked for before anything else is done.
+const PLACES: usize = 256;
 /// Half the length over which linkages are evened out, and how far their points may be moved to spare slivers, in radii.
 const FAIRED: f64 = 0.25;
 const SNAP: f64 = 0.02;
@@ -118,6 +121,11 @@ fn settle_on(sides: &Sides<'_>, curves: &[BlendCurve], params: &Params, watch: &
     let mut radius = RadiusField::constant(params.radius);
     let mut spots: Vec<(DVec3, u32)> = vec![];
     let mut earlier = vec![];
+    if !touches(sides, curves, &radius) {
+        return Err(
+            Trouble::at("no ball touches both sides", places(mesh, curves).take(1).collect()).into_error(params.radius)
+        );
+    }
     params.sketch.begin(mesh, curves);
     let page = params.sketch.page(mesh, &curves[0]);
     for round in 0.. {
@@ -141,6 +149,22 @@ fn settle_on(sides: &Sides<'_>, curves: &[BlendCurve], params: &Params, watch: &
         shrink(&mut radius, &mut spots, places);
     }
     Err(Error::NoCurves)
+}
+
+/// Whether there is a ball anywhere along the curves. In a plate far thinner than the ball there is none, however long it
+/// is looked for.
+fn touches(sides: &Sides<'_>, curves: &[BlendCurve], radius: &RadiusField) -> bool {
+    let all: Vec<DVec3> = places(sides.mesh, curves).collect();
+    let some = all.par_iter().step_by(all.len().div_ceil(PLACES).max(1));
+    some.any(|&p| target(sides, radius, p).is_some())
+}
+
+/// Middles of the curves' edges.
+fn places<'a>(mesh: &'a Connected<TriMesh>, curves: &'a [BlendCurve]) -> impl Iterator<Item = DVec3> + 'a {
+    curves.iter().flat_map(|c| &c.halfedges).map(|&h| {
+        let [a, b] = mesh.ends(h);
+        a.midpoint(b)
+    })
 }
 
 /// Share of the curves' length on which the ball has its full radius.

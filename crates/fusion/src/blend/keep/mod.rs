@@ -33,6 +33,7 @@ use rayon::prelude::*;
 use region::Region;
 use spine::{BlendCurve, Rail, roll_or_halt};
 use target::Target;
+use tri_intersect::self_intersections_among;
 
 /// How the vertices of a region find their places on the surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -225,16 +226,18 @@ fn check(
         changed.extend(beside);
         changed.extend_from_slice(&region.faces);
     }
-    Ok(check_apart(moved, &changed, watch)?)
+    check_apart(moved, &changed, watch)
 }
 
 /// None of the changed faces may meet another.
-fn check_apart(mesh: &TriMesh, changed: &[FaceId], watch: &Watch) -> Result<(), Refusal> {
+fn check_apart(mesh: &TriMesh, changed: &[FaceId], watch: &Watch) -> Result<(), Error> {
     let middle = |f: &FaceId| centroid(mesh.triangle(*f));
-    let unknown = |_| Refusal::Meets { pairs: 0, at: changed.first().map_or(DVec3::ZERO, middle) };
-    let hits = tri_intersect::self_intersections_among(mesh, changed, watch).map_err(unknown)?;
+    let hits = self_intersections_among(mesh, changed, watch).map_err(|error| match error {
+        tri_intersect::Error::Cancelled(c) => Error::from(c),
+        _ => Refusal::Meets { pairs: 0, at: changed.first().map_or(DVec3::ZERO, middle) }.into(),
+    })?;
     match hits.first() {
         None => Ok(()),
-        Some(pair) => Err(Refusal::Meets { pairs: hits.len(), at: middle(&pair[0]) }),
+        Some(pair) => Err(Refusal::Meets { pairs: hits.len(), at: middle(&pair[0]) }.into()),
     }
 }
