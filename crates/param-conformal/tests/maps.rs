@@ -1,9 +1,9 @@
 //! Maps held against formulas, against slower twins, and against themselves.
 
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use mesh_core::{
-    Adjacency, Connected, FaceId, Faces, Positions, TriMesh, VertexId, boundary_loops, cotangent_weight, cotangents,
-    shapes,
+    Adjacency, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, boundary_loops, cotangent_weight,
+    cotangents, shapes,
 };
 use param_conformal::{
     CutRing, Distortion, Error, Harmonic, Outline, RelaxParams, Ring, RingMap, Seam, Weights, map_fixed, map_free,
@@ -307,6 +307,23 @@ proptest! {
                 prop_assert_eq!(count, mesh.face_count());
             }
             Err(other) => prop_assert!(false, "{}", other),
+        }
+    }
+
+    /// What is flat, wherever it lies, is laid down as it is.
+    #[test]
+    fn flat_discs_keep_their_lengths(
+        jitter in prop::collection::vec((-1.0f64..1.0, -1.0f64..1.0), 81),
+        turn in prop::array::uniform3(-3.0f64..3.0),
+        scale in 0.01f64..100.0,
+    ) {
+        let mut posed = jittered(&jitter).into_mesh();
+        posed.positions.iter_mut().for_each(|p| *p = scale * (DQuat::from_scaled_axis(turn.into()) * *p + DVec3::ONE));
+        let mesh = connected(posed);
+        let map = map_free(&mesh).unwrap();
+        for h in mesh.face_ids().flat_map(|f| [0, 1, 2].map(|k| HalfedgeId::new(f, k))) {
+            let mapped = map[mesh.tail(h)].distance(map[mesh.head(h)]);
+            prop_assert!((mapped / mesh.edge_length(h) - 1.0).abs() < 1e-6, "{mapped} {}", mesh.edge_length(h));
         }
     }
 

@@ -29,24 +29,26 @@ impl Edge {
         let closed = rim.ends.is_none();
         let mut places = pairs(&one, &other, closed);
         places.dedup_by(|a, b| (0..2).all(|s| (a[s] - b[s]).abs() < SAME));
-        let met: Vec<DVec3> = places.iter().map(|&[s, t]| meeting(one.at(s), other.at(t))).collect::<Result<_, _>>()?;
-        let kept = advancing(&places, &met, |[s, t]| one.at(s).0 + other.at(t).0, closed);
-        places = kept.iter().map(|&i| places[i]).collect();
-        let mut points: Vec<DVec3> = kept.iter().map(|&i| met[i]).collect();
+        let mut met: Vec<DVec3> =
+            places.iter().map(|&[s, t]| meeting(one.at(s), other.at(t))).collect::<Result<_, _>>()?;
         if let Some([after, before]) = &rim.ends {
             // The first end lies at the end of side 0.
-            let last = points.len() - 1;
+            let last = met.len() - 1;
             for (i, end) in [(last, after), (0, before)] {
                 let [s, t] = places[i];
                 let along = one.at(s).1.cross(other.at(t).1).normalize_or_zero();
                 let slope = end.normal.dot(along);
                 if slope.abs() < GRAZING {
-                    return Err(Refusal::Grazing { at: points[i] });
+                    return Err(Refusal::Grazing { at: met[i] });
                 }
-                let short = end.normal.dot(one.at(s).0 - points[i]);
-                points[i] += short / slope * along;
+                let short = end.normal.dot(one.at(s).0 - met[i]);
+                met[i] += short / slope * along;
             }
         }
+        // Where an end is askew, others may lie beyond it.
+        let kept = advancing(&places, &met, |[s, t]| one.at(s).0 + other.at(t).0, closed);
+        places = kept.iter().map(|&i| places[i]).collect();
+        let points = kept.iter().map(|&i| met[i]).collect();
         Ok(Self { points, places })
     }
 

@@ -3,7 +3,8 @@
 use super::Refusal;
 use glam::DVec3;
 use mesh_core::{
-    Adjacency, Connected, FaceId, FaceMap, Faces, HalfedgeId, TriMesh, centroid, dihedral_angle, face_normal,
+    Adjacency, Connected, FaceId, FaceMap, Faces, HalfedgeId, TriMesh, area_vector, centroid, dihedral_angle,
+    face_normal,
 };
 use mesh_query::TriBvh;
 
@@ -52,13 +53,12 @@ impl Rounding {
         let ball = LARGER * radius.unwrap_or(found.radius);
         let convex = found.convex;
         let rounded = found.flood(mesh, seed, 2, |f| !balls.rests(f, convex, ball));
-        found.peel(mesh, &rounded);
-        found.faces = rounded.into_iter().filter(|&f| found.of[f] == 2).collect();
+        found.faces = found.by_planes(mesh, &rounded);
         // Of a surface that is rounded all over there is nothing left to prolong.
         if found.of[seed] != 2 || found.faces.len() == smooth.len() {
             return Err(Refusal::NotRounded { at });
         }
-        // Peeling may have cut something off.
+        // What was given back may have cut something off.
         found.faces.iter().for_each(|&f| found.of[f] = 1);
         let faces = std::mem::take(&mut found.faces);
         let own: std::collections::BTreeSet<FaceId> = faces.into_iter().collect();
@@ -94,20 +94,37 @@ impl Rounding {
         all
     }
 
-    /// Gives back to the sides what lies in one plane with them.
-    fn peel(&mut self, mesh: &Connected<TriMesh>, rounded: &[FaceId]) {
-        let beside = |of: &FaceMap<u8>, f: FaceId| {
-            let twins = mesh.neighbours(f);
-            let n = face_normal(mesh, f);
-            twins.filter(|&g| of[g] == 1).any(|g| n.cross(face_normal(mesh, g)).length() < FLAT)
-        };
-        let mut stack: Vec<FaceId> = rounded.to_vec();
-        while let Some(f) = stack.pop() {
-            if self.of[f] == 2 && beside(&self.of, f) {
-                self.of[f] = 1;
-                stack.extend(mesh.neighbours(f));
+    /// Lets every plane be all rounded or not at all, as most of its area is, and lists what is rounded then, ascending. Near
+    /// its linkage a flat side has no room for the ball; where a rounding ends askew, little of what is opposite is left,
+    /// and the ball may find room.
+    fn by_planes(&mut self, mesh: &Connected<TriMesh>, rounded: &[FaceId]) -> Vec<FaceId> {
+        let mut seen = FaceMap::filled(mesh.face_count(), false);
+        let mut all = vec![];
+        for &first in rounded {
+            if std::mem::replace(&mut seen[first], true) {
+                continue;
+            }
+            let mut plane = vec![first];
+            for i in 0.. {
+                let Some(&f) = plane.get(i) else { break };
+                let n = face_normal(mesh, f);
+                let level = |g: &FaceId| self.of[*g] != 0 && n.cross(face_normal(mesh, *g)).length() < FLAT;
+                plane.extend(mesh.neighbours(f).filter(level).filter(|&g| !std::mem::replace(&mut seen[g], true)));
+            }
+            let area = |label: u8| -> f64 {
+                let own = plane.iter().filter(|&&f| self.of[f] == label);
+                own.map(|&f| area_vector(mesh.mesh().triangle(f)).length()).sum()
+            };
+            let label = if area(2) > area(1) { 2 } else { 1 };
+            for &f in &plane {
+                self.of[f] = label;
+            }
+            if label == 2 {
+                all.extend(plane);
             }
         }
+        all.sort_unstable();
+        all
     }
 }
 

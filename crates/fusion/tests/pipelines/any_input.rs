@@ -1,8 +1,11 @@
-//! What holds of cuts, remeshing, compositions and repair whatever they are given.
+//! What holds of cuts, remeshing, compositions, features, detail and repair whatever they are given.
 
 use fusion::cut::{Params, PlaneCut, cut};
-use fusion::mesh_core::{TriMesh, Watch, area, shapes, validate};
-use fusion::{Info, Repair, compose, remeshing, repair};
+use fusion::features::{self, feature_curves};
+use fusion::mesh_core::{
+    Adjacency, Connected, Faces, HalfedgeId, Positions, TriMesh, Watch, area, shapes, triangle_normal, validate,
+};
+use fusion::{Info, Region, Repair, compose, detail, detail_transfer, remeshing, repair};
 use glam::{DQuat, DVec3};
 use mesh_io::{Format, Model};
 use proptest::prelude::*;
@@ -43,6 +46,49 @@ proptest! {
         let info = Info::of(&even, &Watch::default()).unwrap();
         prop_assert!(info.closed && info.genus == Some(0) && info.self_intersections == Some(0));
         prop_assert!((info.volume.unwrap() / volume - 1.0).abs() < 1.5 * edge * edge + 1e-3, "{:?} {}", info.volume, volume);
+    }
+
+    /// Curves hold every edge that turns by the angle or more once, in order, and no other.
+    #[test]
+    fn feature_curves_are_the_sharp_edges((mesh, ..) in solid_and_plane(), angle in 2.0f64..30.0) {
+        let mesh = Connected::new(mesh).unwrap();
+        let curves = feature_curves(&mesh, &features::Params { angle, spur: 0 });
+        let low = |h: HalfedgeId| mesh.twin(h).map_or(h, |t| h.min(t));
+        let mut found: Vec<_> = curves.iter().flat_map(|c| &c.halfedges).map(|&h| low(h)).collect();
+        found.sort_unstable();
+        let normal = |h: HalfedgeId| triangle_normal(mesh.triangle(h.face()));
+        let turn = |h: HalfedgeId| normal(h).angle_between(mesh.twin(h).map_or(DVec3::ZERO, normal)).to_degrees();
+        let edges = mesh.face_ids().flat_map(|f| [0, 1, 2].map(|k| HalfedgeId::new(f, k)));
+        let sharp: Vec<_> = edges.filter(|&h| low(h) == h && turn(h) >= angle).collect();
+        prop_assert_eq!(found, sharp);
+        for curve in &curves {
+            prop_assert!(curve.halfedges.windows(2).all(|w| mesh.head(w[0]) == mesh.tail(w[1])));
+            let ends = curve.halfedges.first().map(|&h| mesh.tail(h)) == curve.halfedges.last().map(|&h| mesh.head(h));
+            prop_assert!(ends || !curve.closed);
+        }
+    }
+
+    /// Detail from one side of a solid on the other: the same triangles, and nothing moves but in the region.
+    #[test]
+    fn detail_stays_in_its_region((mesh, _, toward) in solid_and_plane(), radius in 0.3f64..0.6, intensity in 0.2f64..1.0) {
+        let toward = 1.2 * toward.normalize();
+        let near = |center: DVec3| Region::Near { center, radius };
+        let params = detail::Params {
+            target: near(toward),
+            sources: vec![(0, near(-toward))],
+            transfer: detail_transfer::Params { intensity: Some(intensity), ..detail_transfer::Params::default() },
+            format: Format::Off,
+        };
+        let model = Model::from(mesh);
+        let outcome = detail::detail(std::slice::from_ref(&model), &params, &Watch::default()).unwrap();
+        let (before, after) = (&model.mesh, &outcome.model.mesh);
+        prop_assert_eq!(&before.faces, &after.faces);
+        let chosen = params.target.select(&model, &Connected::new(before.clone()).unwrap()).unwrap();
+        let mut inside = vec![false; before.positions.len()];
+        before.face_ids().filter(|&f| chosen[f]).flat_map(|f| before.corners(f)).for_each(|v| inside[v.index()] = true);
+        let moved: Vec<usize> = (0..inside.len()).filter(|&v| before.positions[v] != after.positions[v]).collect();
+        prop_assert!(!moved.is_empty() && moved.iter().all(|&v| inside[v]));
+        prop_assert!(Info::of(after, &Watch::default()).unwrap().self_intersections == Some(0));
     }
 
     /// Any triangles at all: described without fail, and an oriented manifold once oriented and split.

@@ -2,8 +2,12 @@
 
 use fusion::blend::{Blended, Overlap, Params, blend};
 use fusion::features::{self, feature_curves};
+use fusion::{cluster, round, sharpen};
 use glam::{DQuat, DVec3};
-use mesh_core::{Connected, Faces, TriMesh, VertexId, Watch, centroid, shapes, volume};
+use mesh_core::{
+    Connected, Faces, Positions, TriMesh, VertexId, Watch, centroid, shapes, triangle_normal, validate, volume,
+};
+use mesh_io::Format;
 use mesh_query::TriBvh;
 use proptest::prelude::*;
 use spine::BlendCurve;
@@ -107,6 +111,43 @@ proptest! {
         let before = rounded(moved(solid.mesh(), motion), 0.1 * scale, |_| {}).mesh;
         let off = apart(&after, &before) / (0.1 * scale);
         prop_assert!(off < ROUNDING, "{off}");
+    }
+
+    /// A convex polyhedron rounded by clusters stays within its faces, and closed.
+    #[test]
+    fn clusters_stay_inside(solid in Frustum::any()) {
+        let mesh = solid.mesh();
+        let made = cluster::cluster(&mesh.clone().into(), &cluster::Params::new(Format::Off), &Watch::default());
+        let round = made.unwrap().outcome.model.mesh;
+        prop_assert!(validate(&round).is_closed());
+        prop_assert!((0.5..1.0).contains(&(volume(&round) / volume(&mesh))));
+        for f in mesh.face_ids() {
+            let (on, normal) = (mesh.triangle(f)[0], triangle_normal(mesh.triangle(f)));
+            let out = round.positions.iter().map(|p| (*p - on).dot(normal)).fold(f64::MIN, f64::max);
+            prop_assert!(out.abs() < 1e-9, "{out}");
+        }
+    }
+
+    /// A rounded edge of a convex polyhedron, taken back, is the edge.
+    #[test]
+    fn roundings_are_taken_back(solid in Frustum::any(), edge in 0usize..9, radius in 0.03..0.12) {
+        let mesh = solid.mesh();
+        let connected = Connected::new(&mesh).unwrap();
+        let curves = feature_curves(&connected, &features::Params::default());
+        let [a, b] = connected.ends(curves[edge % curves.len()].halfedges[0]);
+        let rounding = round::Params {
+            features: features::Params::default(),
+            near: vec![a.midpoint(b)],
+            picked: vec![],
+            blend: Params::new(radius),
+            format: Format::Off,
+        };
+        let soft = round::round(&mesh.clone().into(), &rounding, &Watch::default()).unwrap().model;
+        let taken = volume(&mesh) - volume(&soft.mesh);
+        let place = TriBvh::build(&soft.mesh).unwrap().closest_point(&soft.mesh, a.midpoint(b)).unwrap().point;
+        let how = sharpen::Params { near: vec![place], radius: None, angle: 40.0, format: Format::Off };
+        let back = sharpen::sharpen(&soft, &how, &Watch::default()).unwrap().model.mesh;
+        prop_assert!(taken > 0.0 && (volume(&back) - volume(&mesh)).abs() < 1e-6 * taken, "{}", volume(&back) - volume(&mesh));
     }
 
     #[test]
