@@ -74,7 +74,8 @@ fn root() -> PathBuf {
 /// The build of a program of this workspace that belongs to the running one, made if need be.
 fn binary(name: &str) -> Result<PathBuf, Fault> {
     let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
-    let build = ["build", "--quiet", "--profile", profile, "-p", name];
+    // Together with this program it has the features that are built already.
+    let build = ["build", "--quiet", "--profile", profile, "-p", "xtask", "-p", name];
     let status = Command::new(env!("CARGO")).args(build).current_dir(root()).status()?;
     if !status.success() {
         return Err(format!("{name} does not build").into());
