@@ -129,7 +129,8 @@ fn code_130_on_ctrl_c() {
     let mut input = child.stdin.take().unwrap();
     input.write_all(b"OFF\n8 12 0\n").unwrap();
     std::thread::sleep(std::time::Duration::from_millis(300));
-    std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    // Not every system has a program for it, but every shell.
+    std::process::Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
     // Its input stays open: the program must stop although it waits for more.
     let output = child.wait_with_output().unwrap();
     drop(input);
