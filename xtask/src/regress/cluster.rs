@@ -1,7 +1,7 @@
 //! Polyhedra rounded by clusters: models against approved records, control nets against another evaluator.
 
 use super::golden::Golden;
-use super::reference::Reference;
+use super::reference::{Reference, python};
 use super::threads::Threads;
 use crate::{Fault, root};
 use fusion::cluster::{Clustered, Degree, Params, PatchParams, Spec, cluster, solids};
@@ -131,7 +131,7 @@ fn compare(name: &str, made: &Clustered, count: usize) -> Result<usize, Fault> {
     let file = folder.path().join("nets.json");
     let nets: Value = serde_json::from_str(&made.nets_to_json())?;
     fs::write(&file, json!({ "nets": nets, "samples": samples }).to_string())?;
-    let output = Command::new("python3").arg(root().join("xtask/nets.py")).arg(&file).output()?;
+    let output = Command::new(python()?).arg(root().join("xtask/nets.py")).arg(&file).output()?;
     let text = String::from_utf8_lossy(&output.stdout);
     let worst: Option<f64> = text.split_whitespace().next().and_then(|w| w.parse().ok());
     match worst {
