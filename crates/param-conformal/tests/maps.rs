@@ -2,8 +2,8 @@
 
 use glam::{DQuat, DVec2, DVec3};
 use mesh_core::{
-    Adjacency, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, area_vector, boundary_loops,
-    cotangent_weight, cotangents, shapes,
+    Adjacency, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, boundary_loops, cotangent_weight,
+    cotangents, shapes,
 };
 use param_conformal::{
     CutRing, Distortion, Error, Harmonic, Outline, RelaxParams, Ring, RingMap, Seam, Weights, map_fixed, map_free,
@@ -263,19 +263,19 @@ fn refusals_name_the_place() {
     ));
 }
 
-/// A flat grid with its inner vertices moved about, few triangles turned over.
+/// A flat grid with its inner vertices moved about, triangles still upright: by a quarter of an edge they might not be.
 fn jittered(jitter: &[(f64, f64)]) -> Mesh {
     let mut mesh = shapes::grid(8.0, 8.0, 8, 8);
     for (p, j) in mesh.positions.iter_mut().zip(jitter) {
         if p.x.abs() < 3.9 && p.y.abs() < 3.9 {
-            *p += DVec3::new(0.3 * j.0, 0.3 * j.1, 0.0);
+            *p += DVec3::new(0.2 * j.0, 0.2 * j.1, 0.0);
         }
     }
     connected(mesh)
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Affine boundary values give the affine map, which reverses nothing and measures as what it is.
     #[test]
@@ -317,10 +317,7 @@ proptest! {
         turn in prop::array::uniform3(-3.0f64..3.0),
         scale in 0.01f64..100.0,
     ) {
-        let flat = jittered(&jitter);
-        let upright = |f: FaceId| area_vector(flat.triangle(f)).z > 0.02;
-        prop_assume!(flat.face_ids().all(upright));
-        let mut posed = flat.into_mesh();
+        let mut posed = jittered(&jitter).into_mesh();
         posed.positions.iter_mut().for_each(|p| *p = scale * (DQuat::from_scaled_axis(turn.into()) * *p + DVec3::ONE));
         let mesh = connected(posed);
         let map = map_free(&mesh).unwrap();
