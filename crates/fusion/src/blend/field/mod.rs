@@ -63,8 +63,10 @@ fn is_arc(params: &Params) -> bool {
     matches!(params.profile, Profile::Arc) && params.profile_at.is_empty() && params.reach.is_none()
 }
 
-/// At how many places of the curves a ball is looked for before anything else is done.
+/// At how many places of curves longer than so many radii a ball is looked for before anything else is done. Around shorter
+/// ones the plate alone may serve.
 const PLACES: usize = 256;
+const LONG: f64 = 20.0;
 /// Half the length over which linkages are evened out, and how far their points may be moved to spare slivers, in radii.
 const FAIRED: f64 = 0.25;
 const SNAP: f64 = 0.02;
@@ -121,7 +123,8 @@ fn settle_on(sides: &Sides<'_>, curves: &[BlendCurve], params: &Params, watch: &
     let mut radius = RadiusField::constant(params.radius);
     let mut spots: Vec<(DVec3, u32)> = vec![];
     let mut earlier = vec![];
-    if !touches(sides, curves, &radius) {
+    let length: f64 = curves.iter().map(|c| c.length(mesh)).sum();
+    if length > LONG * params.radius && !touches(sides, curves, &radius) {
         return Err(
             Trouble::at("no ball touches both sides", places(mesh, curves).take(1).collect()).into_error(params.radius)
         );
