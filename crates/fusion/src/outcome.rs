@@ -125,6 +125,10 @@ pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Re
     for at in &blended.run_outs {
         report.notes.push(format!("the blend runs out in a point at {at}, where no surface ends it"));
     }
+    *report.figures.entry("skipped_curves".into()).or_default() += blended.skipped.len() as f64;
+    for (at, what) in &blended.skipped {
+        report.warnings.push(format!("a curve near {at} stays sharp: {what}"));
+    }
     for (at, what) in &blended.fallbacks {
         report.warnings.push(format!("the blend near {at} is made as a field: {what}"));
     }
@@ -159,6 +163,7 @@ mod tests {
             bridged: 2,
             shrunk: shrunk.to_vec(),
             fallbacks: vec![],
+            skipped: vec![],
             run_outs: vec![DVec3::ZERO],
             levels: 0,
             full_share,

@@ -54,11 +54,22 @@ impl TriBvh {
         p: DVec3,
         max_distance: f64,
     ) -> Option<ClosestPoint> {
+        self.closest_point_where(mesh, p, max_distance, |_| true)
+    }
+
+    /// The same among the faces that `keep` accepts.
+    pub fn closest_point_where<M: Faces + Positions>(
+        &self,
+        mesh: &M,
+        p: DVec3,
+        max_distance: f64,
+        keep: impl Fn(FaceId) -> bool,
+    ) -> Option<ClosestPoint> {
         if self.nodes.is_empty() || !p.is_finite() || max_distance.is_nan() || max_distance < 0.0 {
             return None;
         }
         let mut query = Query::new(self, p, max_distance);
-        query.descend(self, mesh);
+        query.descend(self, mesh, keep);
         let (face, nearest) = query.found?;
         let point = at_barycentric(mesh.triangle(face), nearest.barycentric);
         let distance = nearest.distance_squared.sqrt() / query.scale;
@@ -107,7 +118,7 @@ impl Query {
         d.length_squared()
     }
 
-    fn descend<M: Faces + Positions>(&mut self, tree: &TriBvh, mesh: &M) {
+    fn descend<M: Faces + Positions>(&mut self, tree: &TriBvh, mesh: &M, keep: impl Fn(FaceId) -> bool) {
         let mut stack: Stack<(u32, f64)> = Stack::new();
         let mut next = Some((0, self.box_distance_squared(&tree.nodes[0])));
         while let Some((index, distance)) = next {
@@ -116,7 +127,9 @@ impl Query {
                 next = stack.pop();
             } else if node.is_leaf() {
                 for &f in tree.leaf(node) {
-                    self.consider(mesh, f);
+                    if keep(f) {
+                        self.consider(mesh, f);
+                    }
                 }
                 next = stack.pop();
             } else {

@@ -25,6 +25,17 @@ pub enum Convexity {
     Concave,
 }
 
+impl Convexity {
+    /// The other one.
+    #[must_use]
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Convex => Self::Concave,
+            Self::Concave => Self::Convex,
+        }
+    }
+}
+
 impl BlendCurve {
     /// The chain through a closed cycle of vertices, each joined to the next by an edge with two faces.
     ///

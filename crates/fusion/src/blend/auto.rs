@@ -1,20 +1,25 @@
 //! Which curves are swept and which are blended as a field, one after the other on the same mesh.
 
+use super::corner::closest_between;
 use super::trouble::Trouble;
-use super::{Blended, Error, Params, ROUNDS, Surface, attempt, explained, field};
+use super::{Blended, Error, Overlap, Params, ROUNDS, Surface, attempt, envelope, explained, field};
 use glam::DVec3;
 use mesh_core::{
-    Adjacency, Connected, FaceId, Faces, Origins, Positions, Stage, TriMesh, VertexId, VertexOrigin, Watch,
+    Adjacency, Bounds, Connected, FaceId, Faces, HalfedgeId, Origins, Positions, Stage, TriMesh, VertexId,
+    VertexOrigin, Watch,
 };
+use rayon::prelude::*;
 use spine::{BlendCurve, Convexity};
+use std::collections::BTreeMap;
 
 /// Curves nearer to each other than this, in radii, are blended in the same way: their blends may meet.
 const NEIGHBOURS: f64 = 5.0;
 
-/// Sweeps all curves, or with [`Surface::Field`] none; those near a place where that fails are blended as a field.
+/// Sweeps all curves, or with [`Surface::Field`] none. Those near a place where that fails are blended as a field if they
+/// are closed, or else by the ball's envelope.
 ///
 /// # Errors
-/// That of the sweep where a field cannot serve, or where that fails too.
+/// That of the sweep where nothing else can serve, or where that fails too.
 pub(crate) fn blend(
     mesh: &Connected<TriMesh>,
     curves: &[BlendCurve],
@@ -26,39 +31,233 @@ pub(crate) fn blend(
     }
     let as_asked = params.surface == Surface::Field;
     let mut so_far = SoFar::new(mesh, curves);
-    let mut by_field = vec![as_asked; curves.len()];
+    let mut handed_over = vec![as_asked; curves.len()];
     let mut refusal = None;
-    while by_field.contains(&false) {
-        let chosen: Vec<BlendCurve> = so_far.curves(|i| !by_field[i])?;
+    while handed_over.contains(&false) {
+        let chosen: Vec<BlendCurve> = so_far.curves(|i| !handed_over[i])?;
         match attempt(mesh, &chosen, params, ROUNDS, watch) {
             Ok(swept) => {
-                so_far.add(swept, |i| !by_field[i]);
+                so_far.add(swept, |i| !handed_over[i]);
                 break;
             }
             Err(Trouble::Cancelled(c)) => return Err(c.into()),
-            Err(trouble) if !field::serves(curves, params) => return explained(mesh, curves, params, trouble, watch),
+            Err(trouble) if !field::serves(curves, params) && !envelope::serves(params) => {
+                return explained(mesh, curves, params, trouble, watch);
+            }
             Err(trouble) => {
-                so_far.blended.fallbacks.extend(hand_over(mesh, curves, params, &trouble, &mut by_field));
+                so_far.blended.fallbacks.extend(hand_over(mesh, curves, params, &trouble, &mut handed_over));
                 refusal = Some(trouble);
             }
         }
     }
+    if refusal.is_some() && !field::serves(curves, params) {
+        return by_network(so_far, &handed_over, params, watch);
+    }
     loop {
-        let failure = match add_fields(&mut so_far, &by_field, params, watch) {
+        let failure = match add_fields(&mut so_far, &handed_over, params, watch) {
             Ok(()) => return Ok(so_far.blended),
             Err(failure) => failure,
         };
         let Some(trouble) = refusal.take_if(|_| !matches!(failure, Error::Cancelled(_))) else { return Err(failure) };
-        if !by_field.contains(&false) {
+        if !handed_over.contains(&false) {
             return explained(mesh, curves, params, trouble, watch);
         }
         // Some of the curves alone may not tell two sides apart.
-        by_field.fill(true);
+        handed_over.fill(true);
         let told = so_far.blended.fallbacks;
         so_far = SoFar::new(mesh, curves);
         so_far.blended.fallbacks = told;
         refusal = Some(trouble);
     }
+}
+
+/// Blends the marked curves network by network: by the envelope of the full ball, or where that fails swept with a smaller
+/// ball here and there. Curves for which no ball is found stay sharp.
+fn by_network(mut so_far: SoFar<'_>, marked: &[bool], params: &Params, watch: &Watch) -> Result<Blended, Error> {
+    let (mesh, curves) = (so_far.input, so_far.all);
+    let mut refusal = None;
+    for (group, first) in groups(mesh, curves, marked, params.radius) {
+        let before = so_far.clone();
+        let failure = match by_envelope(&mut so_far, &group, first, params, watch) {
+            Ok(()) => continue,
+            Err(Trouble::Cancelled(c)) => return Err(c.into()),
+            Err(trouble) => trouble,
+        };
+        so_far = before;
+        if params.overlap == Overlap::Error {
+            return explained(mesh, curves, params, failure, watch);
+        }
+        let mut left = None;
+        for share in SHARES {
+            let smaller = Params { radius: share * params.radius, overlap: Overlap::Shrink, ..params.clone() };
+            left = swept_in_part(&mut so_far, &group, &smaller, params.radius, watch)?;
+            if left.is_some() {
+                break;
+            }
+        }
+        let at = failure.place().unwrap_or_else(|| start_of(mesh, &curves[0]));
+        let all = || (0..curves.len()).filter(|&i| group[i]).map(|i| (i, at, failure.what())).collect();
+        let left = left.unwrap_or_else(all);
+        for (i, at, what) in left {
+            so_far.leave(|j| j == i, at, what);
+        }
+        refusal = Some(failure);
+    }
+    match refusal {
+        Some(trouble) if so_far.blended.mesh.faces.is_empty() => explained(mesh, curves, params, trouble, watch),
+        _ => Ok(so_far.blended),
+    }
+}
+
+/// Blends a network by the envelope, one convexity after the other.
+fn by_envelope(
+    so_far: &mut SoFar<'_>,
+    group: &[bool],
+    first: Convexity,
+    params: &Params,
+    watch: &Watch,
+) -> Result<(), Trouble> {
+    let (mesh, curves) = (so_far.input, so_far.all);
+    for convexity in [first, first.opposite()] {
+        let own = |i: usize| group[i] && curves[i].convexity(mesh).unwrap_or(Convexity::Concave) == convexity;
+        if !(0..curves.len()).any(own) {
+            continue;
+        }
+        so_far.connect().map_err(|_| Trouble::at("the blend pinches", vec![]))?;
+        let chosen = so_far.pieces(own);
+        if !chosen.is_empty() {
+            let present = so_far.mesh.as_ref().unwrap_or(mesh);
+            let made = envelope::blend(present, &chosen, convexity, params, watch)?;
+            so_far.add(made, own);
+        }
+    }
+    Ok(())
+}
+
+/// Shares of the radius at which a network is swept where the envelope of the full ball fails.
+const SHARES: [f64; 3] = [1.0, 0.5, 0.25];
+/// A curve that stays sharp, a place where the ball fails and why.
+type Omitted = (usize, DVec3, &'static str);
+/// How often curves are left out of a sweep that fails, at most.
+const OMISSIONS: usize = 4;
+
+/// Sweeps a network with a ball that is made smaller where it does not fit; curves near places where that fails are left
+/// out. Gives for each of these a place and what failed there; `None` if nothing could be swept.
+fn swept_in_part(
+    so_far: &mut SoFar<'_>,
+    group: &[bool],
+    params: &Params,
+    full: f64,
+    watch: &Watch,
+) -> Result<Option<Vec<Omitted>>, Error> {
+    let (mesh, curves) = (so_far.input, so_far.all);
+    let (mut kept, mut left) = (group.to_vec(), vec![]);
+    for _ in 0..=OMISSIONS {
+        so_far.connect()?;
+        if !kept.contains(&true) {
+            break;
+        }
+        let Ok(chosen) = so_far.curves(|i| kept[i]) else { break };
+        let present = so_far.mesh.as_ref().unwrap_or(mesh);
+        let (what, places) = match attempt(present, &chosen, params, ROUNDS / 2, watch) {
+            Ok(mut made) => {
+                if params.radius < full {
+                    made.full_share = 0.0;
+                    made.shrunk.push((start_of(present, &chosen[0]), params.radius));
+                }
+                so_far.add(made, |i| kept[i]);
+                return Ok(Some(left));
+            }
+            Err(Trouble::Cancelled(c)) => return Err(c.into()),
+            Err(Trouble::Places { what, places }) => (what, places),
+            Err(_) => break,
+        };
+        let before = left.len();
+        for place in places {
+            let distance = |i: usize| {
+                let edges = curves[i].halfedges.iter().map(|&h| mesh.ends(h));
+                edges.map(|e| envelope::to_segment(place, e)).fold(f64::INFINITY, f64::min)
+            };
+            let nearest = (0..curves.len()).filter(|&i| group[i]).min_by(|&i, &j| distance(i).total_cmp(&distance(j)));
+            if let Some(i) = nearest.filter(|&i| kept[i]) {
+                kept[i] = false;
+                left.push((i, place, what));
+            }
+        }
+        if left.len() == before {
+            break;
+        }
+    }
+    Ok(None)
+}
+
+fn start_of(mesh: &Connected<TriMesh>, curve: &BlendCurve) -> DVec3 {
+    curve.halfedges.first().map_or(DVec3::ZERO, |&h| mesh.position(mesh.tail(h)))
+}
+
+/// The marked curves in networks that are blended together, each with the convexity that is blended first: where ridges and
+/// valleys meet, the lone one of a corner comes first and the others roll over it, as CAD kernels do.
+fn groups(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    marked: &[bool],
+    radius: f64,
+) -> Vec<(Vec<bool>, Convexity)> {
+    let mut at: BTreeMap<VertexId, Vec<usize>> = BTreeMap::new();
+    for i in (0..curves.len()).filter(|&i| marked[i]) {
+        for &h in &curves[i].halfedges {
+            for v in [mesh.tail(h), mesh.head(h)] {
+                let here = at.entry(v).or_default();
+                if here.last() != Some(&i) {
+                    here.push(i);
+                }
+            }
+        }
+    }
+    let convex = |i: usize| curves[i].convexity(mesh).unwrap_or(Convexity::Concave) == Convexity::Convex;
+    let near = neighbours(mesh, curves, marked, NEIGHBOURS * radius);
+    let mut seen = vec![false; curves.len()];
+    let mut found = vec![];
+    for start in (0..curves.len()).filter(|&i| marked[i]) {
+        if seen[start] {
+            continue;
+        }
+        let mut group = vec![false; curves.len()];
+        let (mut stack, mut votes) = (vec![start], 0i64);
+        while let Some(i) = stack.pop() {
+            if std::mem::replace(&mut group[i], true) {
+                continue;
+            }
+            seen[i] = true;
+            stack.extend(near[i].iter().filter(|&&j| !group[j]));
+        }
+        for here in at.values().filter(|here| group[here[0]] && here.len() > 2) {
+            let ridges = here.iter().filter(|&&i| convex(i)).count();
+            let valleys = here.len() - ridges;
+            if ridges > 0 && valleys > 0 {
+                votes += (ridges as i64 - valleys as i64).signum();
+            }
+        }
+        found.push((group, if votes >= 0 { Convexity::Concave } else { Convexity::Convex }));
+    }
+    found
+}
+
+/// For each marked curve, the others that come within `reach` of it.
+fn neighbours(mesh: &Connected<TriMesh>, curves: &[BlendCurve], marked: &[bool], reach: f64) -> Vec<Vec<usize>> {
+    let edges = |i: usize| curves[i].halfedges.iter().map(|&h| mesh.ends(h));
+    let boxes: Vec<Bounds> = (0..curves.len()).map(|i| Bounds::of(edges(i).flatten()).inflated(0.5 * reach)).collect();
+    let close = |i: usize, j: usize| {
+        boxes[i].overlaps(&boxes[j])
+            && edges(i).any(|e| {
+                edges(j).any(|f| {
+                    let (s, t) = closest_between(e, f);
+                    e[0].lerp(e[1], s).distance(f[0].lerp(f[1], t)) < reach
+                })
+            })
+    };
+    let others = |i: usize| (0..curves.len()).filter(|&j| j != i && marked[i] && marked[j] && close(i, j)).collect();
+    (0..curves.len()).into_par_iter().map(others).collect()
 }
 
 /// Blends the marked curves as fields, one for valleys and one for ridges.
@@ -98,6 +297,7 @@ fn hand_over(
         let pairs = a.iter().flat_map(|p| b.iter().map(move |q| p.distance_squared(*q)));
         pairs.fold(f64::INFINITY, f64::min).sqrt()
     };
+    let ends: Vec<Vec<VertexId>> = curves.iter().map(|c| end_vertices(mesh, c)).collect();
     let mut told = vec![];
     for &place in places {
         let near = (0..curves.len()).filter(|&i| !points[i].is_empty());
@@ -117,7 +317,10 @@ fn hand_over(
                 continue;
             }
             let reach = NEIGHBOURS * params.radius;
-            stack.extend((0..curves.len()).filter(|&j| !by_field[j] && distance(&points[i], &points[j]) < reach));
+            let meets = |j: usize| ends[i].iter().any(|v| ends[j].contains(v));
+            stack.extend(
+                (0..curves.len()).filter(|&j| !by_field[j] && (meets(j) || distance(&points[i], &points[j]) < reach)),
+            );
         }
     }
     if told.is_empty() {
@@ -128,7 +331,16 @@ fn hand_over(
     told
 }
 
+/// Both ends of an open curve.
+fn end_vertices(mesh: &Connected<TriMesh>, curve: &BlendCurve) -> Vec<VertexId> {
+    match (curve.closed, curve.halfedges.first(), curve.halfedges.last()) {
+        (false, Some(&first), Some(&last)) => vec![mesh.tail(first), mesh.head(last)],
+        _ => vec![],
+    }
+}
+
 /// The mesh as it is after some curves have been blended.
+#[derive(Clone)]
 struct SoFar<'a> {
     input: &'a Connected<TriMesh>,
     all: &'a [BlendCurve],
@@ -175,6 +387,67 @@ impl<'a> SoFar<'a> {
             Ok(BlendCurve { halfedges: halfedges.ok_or_else(lost)?, closed: curve.closed })
         };
         chosen.map(moved).collect()
+    }
+
+    /// What is left of some of the curves on the present mesh: along each of their edges the pieces of it that are edges
+    /// still. One that was covered in part gives several.
+    fn pieces(&self, chosen: impl Fn(usize) -> bool) -> Vec<BlendCurve> {
+        let chosen = (0..self.all.len()).filter(|&i| chosen(i)).map(|i| &self.all[i]);
+        let Some(mesh) = &self.mesh else { return chosen.cloned().collect() };
+        let mut now = vec![None; self.input.vertex_count()];
+        let mut splits: BTreeMap<[VertexId; 2], Vec<(f64, VertexId)>> = BTreeMap::new();
+        for (v, origin) in (0u32..).map(VertexId).zip(self.blended.origins.vertices.as_slice()) {
+            match *origin {
+                VertexOrigin::Input { vertex, .. } => now[vertex.index()] = Some(v),
+                VertexOrigin::Edge { ends: [a, b], t, .. } if a < b => splits.entry([a, b]).or_default().push((t, v)),
+                VertexOrigin::Edge { ends: [a, b], t, .. } => splits.entry([b, a]).or_default().push((1.0 - t, v)),
+                _ => {}
+            }
+        }
+        splits.values_mut().for_each(|s| s.sort_by(|a, b| a.0.total_cmp(&b.0)));
+        let mut found = vec![];
+        for curve in chosen {
+            let mut chain: Vec<Option<VertexId>> = vec![];
+            for &h in &curve.halfedges {
+                let (a, b) = (self.input.tail(h), self.input.head(h));
+                chain.push(now[a.index()]);
+                let mut within: Vec<VertexId> =
+                    splits.get(&[a.min(b), a.max(b)]).into_iter().flatten().map(|s| s.1).collect();
+                if b < a {
+                    within.reverse();
+                }
+                chain.extend(within.into_iter().map(Some));
+            }
+            chain.extend(curve.halfedges.last().map(|&h| now[self.input.head(h).index()]));
+            let mut halfedges = vec![];
+            let mut whole = curve.closed;
+            let mut close = |halfedges: &mut Vec<HalfedgeId>, closed| {
+                if !halfedges.is_empty() {
+                    found.push(BlendCurve { halfedges: std::mem::take(halfedges), closed });
+                }
+            };
+            for w in chain.windows(2) {
+                match w[0].zip(w[1]).and_then(|(a, b)| mesh.halfedge(a, b)) {
+                    Some(h) => halfedges.push(h),
+                    None => {
+                        whole = false;
+                        close(&mut halfedges, false);
+                    }
+                }
+            }
+            close(&mut halfedges, whole);
+        }
+        found
+    }
+
+    /// Notes that some of the curves stay sharp, and why.
+    fn leave(&mut self, chosen: impl Fn(usize) -> bool, at: DVec3, what: &'static str) {
+        let own = (0..self.all.len()).filter(|&i| chosen(i));
+        let length: f64 = own.clone().map(|i| self.all[i].length(self.input)).sum();
+        self.blended.skipped.extend(own.map(|_| (at, what)));
+        let so_far = &mut self.blended;
+        so_far.full_share *= self.length / (self.length + length).max(f64::MIN_POSITIVE);
+        self.length += length;
     }
 
     /// Takes over what became of the present mesh, and the account of it.

@@ -21,6 +21,7 @@
 //! | `plate.rs` | a disc of triangles bent onto a ball or into a thin plate |
 //! | `sew.rs` | removal of what lies between, sewing |
 //! | `field/` | the blend as a field: no spine, cannot fold |
+//! | `envelope/` | networks by the envelope of all balls: any corner, consumed faces |
 //! | `keep/` | the other surface: vertices slid onto the sweep, connectivity kept |
 //! | `sketch.rs` | what the stages draw for whoever wants to look |
 //! | `trouble.rs` | what a stage refuses, and where |
@@ -29,6 +30,7 @@ mod auto;
 mod corner;
 mod dwindle;
 mod ending;
+mod envelope;
 mod error;
 mod field;
 mod fill;
@@ -94,6 +96,8 @@ pub struct Blended {
     pub shrunk: Vec<(DVec3, f64)>,
     /// Where sweeping failed and a field took its place: place, and what failed there.
     pub fallbacks: Vec<(DVec3, &'static str)>,
+    /// For each curve left sharp, where no ball fits and why.
+    pub skipped: Vec<(DVec3, &'static str)>,
     /// Where a curve ends alone with no surface to stop at, so that the blend runs out in a point.
     pub run_outs: Vec<DVec3>,
     /// On which level of a decimation hierarchy the blend was made; 0 is the mesh itself.
@@ -116,6 +120,7 @@ impl Blended {
             bridged: 0,
             shrunk: vec![],
             fallbacks: vec![],
+            skipped: vec![],
             run_outs: vec![],
             levels: 0,
             full_share: 1.0,
@@ -196,6 +201,8 @@ fn explained(
 
 /// How often places may be mended before the blend is given up.
 const ROUNDS: usize = 14;
+/// How often linkages are softened where no smaller ball is wanted.
+const SOFTENINGS: usize = 2;
 /// From which round on a blend is given up that has more than a `FEW` places of trouble, and more than half of those it
 /// had at first.
 const TELLING: usize = 4;
@@ -242,7 +249,7 @@ fn attempt(
         let Trouble::Places { ref places, .. } = trouble else { return Err(trouble) };
         let first = *at_first.get_or_insert(places.len());
         let hopeless = round >= TELLING && places.len() > FEW && 2 * places.len() > first;
-        let refused = params.overlap != Overlap::Shrink && round >= 2;
+        let refused = params.overlap != Overlap::Shrink && round >= SOFTENINGS;
         if refused || hopeless || round >= rounds || !mends.add(places, params.overlap) {
             return Err(trouble);
         }

@@ -89,12 +89,17 @@ pub(crate) fn sweep(
         let balls = [i, next].map(|k| stretch.station(k).ok());
         let centers = [balls[0].or(balls[1]), balls[1].or(balls[0])].map(|b| b.map_or(DVec3::ZERO, |b| b.center));
         let front = Front { center: centers[0].midpoint(centers[1]), convexity: stretch.rail.convexity };
+        let position = |v: VertexId| {
+            if v.0 >= first_new { strip.piece.points[(v.0 - first_new) as usize] } else { position(v) }
+        };
+        let columns = [columns.get(i), columns.get(next)];
+        // Profiles are divided evenly; where a strip stops, the edges of the surface there divide the last one anyhow.
+        let stops = [i, next].iter().any(|&k| matches!(stretch.station(k), Err(Ending::Stop(_))));
         let cell = Cell {
-            columns: [columns.get(i), columns.get(next)],
+            columns,
+            lengths: stops.then(|| columns.map(|c| shares(c, &position))),
             spans: [0, 1].map(|s| linkages[s].span(i)),
-            at: |v: VertexId| {
-                if v.0 >= first_new { strip.piece.points[(v.0 - first_new) as usize] } else { position(v) }
-            },
+            at: position,
             front,
         };
         let before = strip.piece.faces.len();
@@ -107,6 +112,17 @@ pub(crate) fn sweep(
         }
     }
     strip
+}
+
+/// Share of a chain's length up to each of its vertices.
+fn shares(chain: &[VertexId], position: impl Fn(VertexId) -> DVec3) -> Vec<f64> {
+    let mut length = 0.0;
+    let along = chain.windows(2).map(|w| {
+        length += position(w[0]).distance(position(w[1]));
+        length
+    });
+    let at: Vec<f64> = std::iter::once(0.0).chain(along).collect();
+    at.iter().map(|s| s / at[at.len() - 1].max(f64::MIN_POSITIVE)).collect()
 }
 
 /// Points of one profile, feet included.
@@ -171,6 +187,8 @@ impl Front {
 struct Cell<'a, P> {
     /// Vertices of each profile from the left linkage to the right one.
     columns: [&'a [VertexId]; 2],
+    /// Share of each profile's length up to its vertices, where they are not evenly spaced.
+    lengths: Option<[Vec<f64>; 2]>,
     /// Vertices of each linkage from this profile's foot to the next one's, both included.
     spans: [&'a [VertexId]; 2],
     at: P,
@@ -223,6 +241,9 @@ impl<P: Fn(VertexId) -> DVec3> Cell<'_, P> {
 
     /// Which column to climb: the one that lags behind, or on a tie the one with the shorter diagonal.
     fn left_first(&self, [i, j]: [usize; 2], last: [usize; 2]) -> bool {
+        if let Some([left, right]) = &self.lengths {
+            return left[i + 1] + left[i] <= right[j + 1] + right[j];
+        }
         let (left, right) = ((i + 1) * last[1], (j + 1) * last[0]);
         if left != right {
             return left < right;

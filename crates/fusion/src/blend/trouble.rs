@@ -43,6 +43,23 @@ impl Trouble {
         }
     }
 
+    /// The first place, if there is one.
+    pub fn place(&self) -> Option<DVec3> {
+        match self {
+            Self::Places { places, .. } => places.first().copied(),
+            Self::TwoRadiiMeet(at) => Some(*at),
+            _ => None,
+        }
+    }
+
+    /// What happened, in short.
+    pub fn what(&self) -> &'static str {
+        match self {
+            Self::Places { what, .. } => what,
+            _ => "the blend fails",
+        }
+    }
+
     pub fn at(what: &'static str, places: Vec<DVec3>) -> Self {
         Self::Places { what, places }
     }

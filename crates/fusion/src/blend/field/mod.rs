@@ -19,7 +19,7 @@
 mod ball;
 mod level;
 mod mark;
-mod piece;
+pub(in crate::blend) mod piece;
 mod plate;
 mod sides;
 mod surface;
