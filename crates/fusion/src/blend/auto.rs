@@ -1,7 +1,7 @@
 //! Which curves are swept and which are blended as a field, one after the other on the same mesh.
 
 use super::trouble::Trouble;
-use super::{Blended, Error, Params, ROUNDS, Surface, attempt, explained, field};
+use super::{Blended, CurveBlend, Error, Method, Params, ROUNDS, Surface, attempt, explained, field};
 use glam::DVec3;
 use mesh_core::{
     Adjacency, Connected, FaceId, Faces, Origins, Positions, Stage, TriMesh, VertexId, VertexOrigin, Watch,
@@ -25,7 +25,7 @@ pub(crate) fn blend(
         return Err(Error::NoCurves);
     }
     let as_asked = params.surface == Surface::Field;
-    let mut so_far = SoFar::new(mesh, curves);
+    let mut so_far = SoFar::new(mesh, curves, params.radius);
     let mut by_field = vec![as_asked; curves.len()];
     let mut refusal = None;
     while by_field.contains(&false) {
@@ -55,7 +55,7 @@ pub(crate) fn blend(
         // Some of the curves alone may not tell two sides apart.
         by_field.fill(true);
         let told = so_far.blended.fallbacks;
-        so_far = SoFar::new(mesh, curves);
+        so_far = SoFar::new(mesh, curves, params.radius);
         so_far.blended.fallbacks = told;
         refusal = Some(trouble);
     }
@@ -132,6 +132,7 @@ fn hand_over(
 struct SoFar<'a> {
     input: &'a Connected<TriMesh>,
     all: &'a [BlendCurve],
+    radius: f64,
     /// The present mesh; `None` while it is the input, or until [`SoFar::connect`].
     mesh: Option<Connected<TriMesh>>,
     blended: Blended,
@@ -140,9 +141,10 @@ struct SoFar<'a> {
 }
 
 impl<'a> SoFar<'a> {
-    fn new(input: &'a Connected<TriMesh>, all: &'a [BlendCurve]) -> Self {
-        let blended = Blended::new(TriMesh::default(), Origins::default(), FaceId(0));
-        Self { input, all, mesh: None, blended, length: 0.0 }
+    fn new(input: &'a Connected<TriMesh>, all: &'a [BlendCurve], radius: f64) -> Self {
+        let mut blended = Blended::new(TriMesh::default(), Origins::default(), FaceId(0));
+        blended.curves = all.iter().map(|c| CurveBlend::sharp(c.length(input), None)).collect();
+        Self { input, all, radius, mesh: None, blended, length: 0.0 }
     }
 
     /// Makes ready for more curves to be blended.
@@ -181,6 +183,13 @@ impl<'a> SoFar<'a> {
     fn add(&mut self, made: Blended, chosen: impl Fn(usize) -> bool) {
         let own: f64 = (0..self.all.len()).filter(|&i| chosen(i)).map(|i| self.all[i].length(self.input)).sum();
         let so_far = &mut self.blended;
+        for (k, i) in (0..self.all.len()).filter(|&i| chosen(i)).enumerate() {
+            let by_field = || {
+                let least = made.shrunk.iter().map(|s| s.1).fold(self.radius, f64::min);
+                CurveBlend::made(Method::Field, least, so_far.curves[i].length, made.full_share)
+            };
+            so_far.curves[i] = made.curves.get(k).copied().unwrap_or_else(by_field);
+        }
         let before = self.mesh.take();
         so_far.origins = match &before {
             Some(before) => {
