@@ -43,7 +43,7 @@ pub struct Common {
     #[arg(long, value_name = "N", global = true, help_heading = "Common options",
           value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Show no progress bars, even on a terminal
+    /// Show no progress: neither a bar on a terminal nor a line every five seconds elsewhere
     #[arg(long, global = true, help_heading = "Common options")]
     pub no_progress: bool,
     /// Say nothing but errors
@@ -74,10 +74,11 @@ pub enum Verb {
     Difference(Join),
     /// Keep what all solids share
     Intersection(Join),
-    /// Fillet feature curves with a rolling ball
+    /// Fillet feature curves with a rolling ball; `chamfer` stands for `blend --profile chamfer`
     #[command(visible_alias = "fillet")]
     Blend(Blend),
     /// Chamfer feature curves: `blend --profile chamfer`
+    #[command(hide = true)]
     Chamfer(Blend),
     /// Join the openings of parts by one smooth surface, leaving the parts as they are
     Compose(Compose),

@@ -87,9 +87,9 @@ impl Failure {
         self.code == 130
     }
 
-    /// The report of the job that failed; `None` for wrong usage.
+    /// The report of the job that failed; `None` for wrong usage, and where outputs could not be written: those come all or none.
     pub fn to_report(&self, command: &str, inputs: Vec<Counts>) -> Option<Report> {
-        let report = self.report.as_deref()?.clone();
+        let report = self.report.as_deref().filter(|_| self.code != 6)?.clone();
         Some(Report { command: command.into(), inputs, exit_code: self.code, ..report })
     }
 

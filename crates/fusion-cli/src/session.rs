@@ -190,7 +190,8 @@ impl Session {
     }
 }
 
-/// Writes the report of a failed job, if it can be written: the failure itself matters more.
+/// Writes the report of a failed job, if it can be written: the failure itself matters more. Where another file could not be
+/// written, none is.
 fn write_failed(path: Option<&Path>, failure: &Failure, name: &str, inputs: Vec<Counts>) {
     if let Some((path, report)) = path.zip(failure.to_report(name, inputs)) {
         let mut outputs = Outputs::default();

@@ -150,7 +150,7 @@ pub(crate) fn choose(
     let all = feature_curves(mesh, features);
     let others = !picked.is_empty() || !seams.is_empty();
     let named = others || !choice.ids.is_empty() || !choice.near.is_empty();
-    if all.is_empty() && !others {
+    if all.is_empty() && (!others || !choice.near.is_empty()) {
         return Err(Refusal::NoEdges { angle: features.angle, sharpest: sharpest(mesh) }.into());
     }
     let mut told = vec![];

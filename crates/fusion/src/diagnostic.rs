@@ -144,8 +144,7 @@ impl Diagnostic {
             true => (Code::CurveFar, Severity::Warning),
             false => (Code::CurveTaken, Severity::Note),
         };
-        let told =
-            Self::new(code, severity, message).at(place).with("curve", id as f64).with("distance", distance);
+        let told = Self::new(code, severity, message).at(place).with("curve", id as f64).with("distance", distance);
         if distance > far { told.remedy("name a point on the curve, or the curve by its id") } else { told }
     }
 

@@ -61,7 +61,8 @@ fn overlay_all(
     let mut report = Report::new("join", parts.iter().map(|m| Counts::of("", &m.mesh)).collect());
     let mut solids = report.time("connect", || connect(parts))?.into_iter();
     let (Some(mut whole), 2..) = (solids.next(), parts.len()) else { return Err(Error::TooFew(parts.len())) };
-    let taken = if blend.is_some() && !params.seams.is_all() { Some(choose_seams(parts, params, watch)?) } else { None };
+    let taken =
+        if blend.is_some() && !params.seams.is_all() { Some(choose_seams(parts, params, watch)?) } else { None };
     let mut count = 0;
     for (part, solid) in (1..).zip(solids) {
         let step = (parts.len() > 2).then_some(part);
@@ -134,7 +135,8 @@ fn choose_seams(parts: &[Model], params: &Params, watch: &Watch) -> Result<Taken
         let longest = lengths.iter().copied().fold(0.0, f64::max);
         return Err(choice::Refusal::NothingPasses { count: lengths.len(), longest }.into());
     }
-    let size = parts.iter().map(|m| mesh_core::bounds(&m.mesh)).fold(mesh_core::Bounds::EMPTY, mesh_core::Bounds::union);
+    let size =
+        parts.iter().map(|m| mesh_core::bounds(&m.mesh)).fold(mesh_core::Bounds::EMPTY, mesh_core::Bounds::union);
     let tell = |(near, best): (&Near, &Option<(usize, DVec3, f64)>)| {
         let (id, place, distance) = (*best)?;
         Some(Diagnostic::curve_taken(near.at, "seam", id, place, distance, FAR * size.diagonal()))
@@ -256,7 +258,8 @@ fn told(warning: &Warning) -> Diagnostic {
         ))
         .at(at),
         Warning::Merged { points, at } => {
-            other(format!("{points} points that 64-bit coordinates cannot tell apart were merged, first at {at}")).at(at)
+            other(format!("{points} points that 64-bit coordinates cannot tell apart were merged, first at {at}"))
+                .at(at)
         }
         Warning::Collapsed { edges } => other(format!("{edges} short edges along the seam were collapsed")),
     }

@@ -27,8 +27,7 @@ pub(crate) fn record(
     params: &blend::Params,
     report: &mut Report,
 ) {
-    let curves: Vec<Curve<'_>> =
-        parts.iter().map(|p| Curve { halfedges: &p.halfedges, radius: p.radius }).collect();
+    let curves: Vec<Curve<'_>> = parts.iter().map(|p| Curve { halfedges: &p.halfedges, radius: p.radius }).collect();
     let (measured, overall) = report.time("measure", || measure(mesh, &curves, blended));
     let is_round = params.profile == Profile::Arc
         && params.profile_at.is_empty()
@@ -55,7 +54,8 @@ pub(crate) fn record(
     account(blended, params, report);
     tell_sharp(parts, blended, report);
     let total: f64 = report.curves.iter().map(|c| c.length).sum();
-    let claims = |c: &CurveReport| c.full_share.unwrap_or(if c.method == Method::Sharp { 0.0 } else { blended.full_share });
+    let claims =
+        |c: &CurveReport| c.full_share.unwrap_or(if c.method == Method::Sharp { 0.0 } else { blended.full_share });
     let full: f64 = report.curves.iter().map(|c| c.length * claims(c)).sum();
     let skipped = report.curves.iter().filter(|c| c.method == Method::Sharp).count();
     report.figures.insert("curves".into(), report.curves.len() as f64);

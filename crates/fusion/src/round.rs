@@ -109,7 +109,8 @@ fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch)
 
 /// The radii that curves have of their own, in the ball's parameters.
 fn with_own_radii(mesh: &Connected<TriMesh>, chosen: &[Chosen], how: &blend::Params) -> blend::Params {
-    let own: Vec<(DVec3, f64)> = chosen.iter().filter_map(|c| Some((point_along(mesh, &c.curve.halfedges)?, c.radius?))).collect();
+    let own: Vec<(DVec3, f64)> =
+        chosen.iter().filter_map(|c| Some((point_along(mesh, &c.curve.halfedges)?, c.radius?))).collect();
     let Some(&(_, first)) = own.first() else { return how.clone() };
     let mut how = how.clone();
     if own.len() == chosen.len() && own.iter().all(|o| o.1 == first) && how.radii.keys.is_empty() {
@@ -126,7 +127,8 @@ fn with_own_radii(mesh: &Connected<TriMesh>, chosen: &[Chosen], how: &blend::Par
 fn joined(mesh: &Connected<TriMesh>, chosen: &[Chosen]) -> (Vec<BlendCurve>, Vec<usize>) {
     let mut curves: Vec<BlendCurve> = chosen.iter().map(|c| c.curve.clone()).collect();
     let mut at: BTreeMap<VertexId, Vec<usize>> = BTreeMap::new();
-    let ends = |c: &BlendCurve| c.halfedges.first().zip(c.halfedges.last()).map(|(&f, &l)| [mesh.tail(f), mesh.head(l)]);
+    let ends =
+        |c: &BlendCurve| c.halfedges.first().zip(c.halfedges.last()).map(|(&f, &l)| [mesh.tail(f), mesh.head(l)]);
     for (i, curve) in curves.iter().enumerate().filter(|(_, c)| !c.closed) {
         ends(curve).into_iter().flatten().for_each(|v| at.entry(v).or_default().push(i));
     }

@@ -59,8 +59,7 @@ impl Run {
     pub fn is_full(&self) -> bool {
         let Ok((_, report)) = &self.outcome else { return false };
         let figure = |name: &str| report.figures.get(name).copied().unwrap_or_default();
-        report.curves.iter().all(|c| c.method != Method::Sharp)
-            && figure("smallest_radius") >= 0.999 * figure("radius")
+        report.curves.iter().all(|c| c.method != Method::Sharp) && figure("smallest_radius") >= 0.999 * figure("radius")
     }
 
     /// Why there is no result, or what it warns of first.

@@ -85,7 +85,8 @@ fn table(rows: &[Row]) -> Result<String, Fault> {
             times.get(half).copied().unwrap_or_default(),
         )?;
     }
-    text += "\n| mesh | radius | exit | blended | full | s | first warning or reason |\n|---|---|---|---|---|---|---|\n";
+    text +=
+        "\n| mesh | radius | exit | blended | full | s | first warning or reason |\n|---|---|---|---|---|---|---|\n";
     for Row { name, share, run } in rows {
         let shares = run.shares().map_or(["-".into(), "-".into()], |s| s.map(|x| format!("{:.1}%", 100.0 * x)));
         let [blended, full] = shares;

@@ -193,3 +193,28 @@ fn table(rows: &[Row], alone: &BTreeMap<String, Straight>) -> Result<String, Fau
     }
     Ok(text)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh_core::shapes;
+
+    #[test]
+    fn arrays_of_points_are_read() {
+        let header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n";
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend((header.len() as u16).to_le_bytes());
+        bytes.extend(header.bytes());
+        assert!(read_points(&bytes).unwrap().is_empty());
+        [1.0f32, 2.0, 3.0, 4.0, 5.0, 6.5].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+        assert_eq!(read_points(&bytes).unwrap(), [DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.5)]);
+        assert!(read_points(b"NUMPY").is_err());
+    }
+
+    /// Each edge of a box alone is rounded without a fold.
+    #[test]
+    fn edges_of_a_box_are_right() {
+        let found = straight_edges(&Model::from(shapes::cuboid(DVec3::splat(4.0)))).unwrap();
+        assert_eq!((found.edges, found.refused, found.folded.len()), (12, 0, 0));
+    }
+}

@@ -108,8 +108,8 @@ fn code_6_leaves_everything_as_it_was() {
         "convert a.off -o nowhere/out.off",
         "convert a.off -o folder.off",
         "convert a.off -o out.off --report nowhere/r.json",
-        "convert a.off -o out.off --origins nowhere/o.json",
-        "union a.off b.off -o out.off --origins nowhere/o.json",
+        "convert a.off -o out.off --origins nowhere/o.json --report r.json",
+        "union a.off b.off -o out.off --origins nowhere/o.json --report r.json",
         "features a.off -o nowhere/curves.json",
         "info a.off --report nowhere/r.json",
     ] {

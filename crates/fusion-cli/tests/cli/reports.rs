@@ -11,10 +11,10 @@ fn every_chosen_curve_is_told() {
     let report = json(&bench.read("r.json"));
     let figure = |name: &str| report["figures"][name].as_f64().unwrap();
     assert_eq!([figure("curves"), figure("skipped_curves"), figure("smallest_radius")], [12.0, 0.0, 0.2]);
-    assert!(figure("full_share") > 0.999 && figure("ball_error_99") < 0.03, "{}", report["figures"]);
+    assert!(figure("full_share") > 0.999 && figure("ball_error_99") < 0.04, "{}", report["figures"]);
     for curve in report["curves"].as_array().unwrap() {
         let errors: Vec<f64> = curve["ball_error"].as_array().unwrap().iter().map(|e| e.as_f64().unwrap()).collect();
-        assert!(errors.len() == 3 && errors.is_sorted() && errors[2] < 0.03, "{curve}");
+        assert!(errors.len() == 3 && errors.is_sorted() && errors[2] < 0.04, "{curve}");
         assert_eq!((&curve["method"], &curve["blended_share"]), (&"strip".into(), &1.0.into()));
     }
     assert_eq!((&report["exit_code"], &report["diagnostics"]), (&0.into(), &serde_json::json!([])));
@@ -66,7 +66,11 @@ fn strict_allows_no_warning() {
     bench.file("far.off", &cube([10.0, 0.0, 0.0], 1.0));
     bench.run("union a.off far.off -o out.off").expect(0);
     let run = bench.run("union a.off far.off -o strict.off --strict --report r.json").expect(4);
-    assert!(run.stderr.contains("warning: the surfaces do not cross") && run.stderr.contains("--strict"), "{}", run.stderr);
+    assert!(
+        run.stderr.contains("warning: the surfaces do not cross") && run.stderr.contains("--strict"),
+        "{}",
+        run.stderr
+    );
     let report = json(&bench.read("r.json"));
     let codes: Vec<_> = report["diagnostics"].as_array().unwrap().iter().map(|d| d["code"].as_str().unwrap()).collect();
     assert_eq!((codes, bench.path("strict.off").exists()), (vec!["apart", "strict"], false));

@@ -81,7 +81,7 @@ pub struct ListedRadius {
 }
 
 /// Shares of what the sides allow that are tried for a list.
-const LISTED: [f64; 3] = [0.98, 0.5, 0.25];
+const LISTED: [f64; 3] = [0.98, 0.49, 0.24];
 
 /// The largest radius for one curve of a list: what the width of its sides allows, or if `attempts` the first share of it with which
 /// the curve alone can be blended. `None` where the sides have no end or no share works.

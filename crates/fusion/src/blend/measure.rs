@@ -5,15 +5,20 @@
 
 use super::Blended;
 use glam::{DVec3, I64Vec3};
-use mesh_core::{Bounds, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, VertexOrigin, area_vector};
+use mesh_core::{
+    Bounds, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, VertexOrigin, area_vector,
+};
 use mesh_query::TriBvh;
 use rayon::prelude::*;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// A blend is full where the ball error is no larger than this.
 const FULL: f64 = 0.05;
 /// Shares of the area at which errors are told.
 const QUANTILES: [f64; 3] = [0.5, 0.9, 0.99];
+/// Faces around a vertex that turn from each other by more than this, as a cosine (40 degrees), are not one surface: at the end of a
+/// strip, blend and end face.
+const ONE_SURFACE: f64 = 0.766;
 /// Length of the pieces into which a curve is divided, in radii, and the most pieces.
 const PIECE: f64 = 0.5;
 const MOST_PIECES: usize = 10_000;
@@ -63,6 +68,8 @@ struct Sample {
     /// Where along the curve it is, in model units.
     at: f64,
     error: f64,
+    /// The error of the smooth surface around the vertex that fits the ball best: the same but on creases.
+    smooth_error: f64,
     weight: f64,
 }
 
@@ -100,11 +107,13 @@ impl Along {
         let mut inside: Vec<bool> = result.vertex_ids().map(is_new).collect();
         let mut normals = vec![DVec3::ZERO; inside.len()];
         let mut areas = vec![0.0; inside.len()];
+        let mut made = vec![];
         for f in result.face_ids() {
             let corners = result.corners(f);
             let new = corners.map(is_new);
             if new == [true; 3] {
                 let vector = area_vector(result.triangle(f));
+                made.push((corners, vector));
                 for v in corners {
                     normals[v.index()] += vector;
                     areas[v.index()] += vector.length() / 3.0;
@@ -113,6 +122,7 @@ impl Along {
                 corners.iter().for_each(|v| inside[v.index()] = false);
             }
         }
+        let creased = on_creases(&made, &normals, &inside);
         let Some(tree) = &self.tree else { return vec![] };
         let nearest = |v: usize| {
             let p = result.positions[v];
@@ -131,11 +141,12 @@ impl Along {
         let sample = |place: &(usize, usize, f64, DVec3)| {
             let &(v, curve, at, _) = place;
             let r = curves[curve].radius;
-            let miss = |c: DVec3| {
-                surface.closest_point(mesh, c).map_or(f64::INFINITY, |near| (near.distance - r).abs() / r)
-            };
+            let miss =
+                |c: DVec3| surface.closest_point(mesh, c).map_or(f64::INFINITY, |near| (near.distance - r).abs() / r);
             let error = centers(place).map(miss).into_iter().fold(f64::INFINITY, f64::min);
-            Sample { curve, at, error, weight: areas[v] }
+            let smooth = creased.get(&v).into_iter().flatten();
+            let smooth = smooth.flat_map(|&n| centers(&(v, curve, at, n))).map(miss).fold(error, f64::min);
+            Sample { curve, at, error, smooth_error: smooth, weight: areas[v] }
         };
         placed.par_iter().map(sample).collect()
     }
@@ -149,13 +160,16 @@ impl Along {
         sharp: &HashSet<[VertexId; 2]>,
     ) -> Measured {
         let length = self.lengths[index];
+        if length <= 0.0 {
+            return Measured { ball_error: None, full_share: None, blended_share: 1.0 };
+        }
         let pieces = ((length / (PIECE * curve.radius)).ceil() as usize).clamp(1, MOST_PIECES);
         let piece_of = |at: f64| ((at / length * pieces as f64) as usize).min(pieces - 1);
         let mut weights = vec![[0.0; 2]; pieces];
         for s in own {
             let [full, all] = &mut weights[piece_of(s.at)];
             *all += s.weight;
-            *full += if s.error <= FULL { s.weight } else { 0.0 };
+            *full += if s.smooth_error <= FULL { s.weight } else { 0.0 };
         }
         let mut left = vec![0.0; pieces];
         let mut at = 0.0;
@@ -188,6 +202,32 @@ impl Along {
             blended_share: (1.0 - sharp_length / length).clamp(0.0, 1.0),
         }
     }
+}
+
+/// The inner vertices on creases, each with the normals of the smooth surfaces that meet there: one for each face around, of all
+/// faces that turn from it by little.
+fn on_creases(made: &[([VertexId; 3], DVec3)], normals: &[DVec3], inside: &[bool]) -> HashMap<usize, Vec<DVec3>> {
+    let unit: Vec<DVec3> = made.par_iter().map(|m| m.1.normalize_or_zero()).collect();
+    let mut found: HashMap<usize, Vec<DVec3>> = HashMap::new();
+    for ((corners, _), unit) in made.iter().zip(&unit) {
+        for v in corners.iter().map(|v| v.index()).filter(|&v| inside[v]) {
+            if unit.dot(normals[v].normalize_or_zero()) < ONE_SURFACE {
+                found.entry(v).or_default();
+            }
+        }
+    }
+    let mut around: HashMap<usize, Vec<DVec3>> = HashMap::new();
+    for (corners, vector) in made {
+        for v in corners.iter().map(|v| v.index()).filter(|v| found.contains_key(v)) {
+            around.entry(v).or_default().push(*vector);
+        }
+    }
+    for (v, vectors) in around {
+        let alike = |a: DVec3, b: DVec3| a.normalize_or_zero().dot(b.normalize_or_zero()) >= ONE_SURFACE;
+        let mean = |&a: &DVec3| vectors.iter().filter(|&&b| alike(a, b)).sum::<DVec3>().normalize_or_zero();
+        found.insert(v, vectors.iter().map(mean).collect());
+    }
+    found
 }
 
 /// The errors at [`QUANTILES`] of the weight.
@@ -229,7 +269,8 @@ fn edges_left(mesh: &Connected<TriMesh>, curves: &[Curve<'_>], blended: &Blended
 
 /// A tree of the faces of `mesh` within `reach` of any of some points, at least.
 fn neighbourhood(mesh: &Connected<TriMesh>, points: impl Iterator<Item = DVec3>, reach: f64) -> Option<TriBvh> {
-    let cell = |p: DVec3| (p / reach).floor().as_i64vec3();
+    // Far from the origin, or with a tiny radius, cells run together: more faces than needed are taken then.
+    let cell = |p: DVec3| (p / reach).floor().clamp(DVec3::splat(-1e15), DVec3::splat(1e15)).as_i64vec3();
     let (mut cells, mut around) = (HashSet::new(), Bounds::EMPTY);
     for p in points {
         around = around.union(Bounds::of([p]));
@@ -248,9 +289,8 @@ fn neighbourhood(mesh: &Connected<TriMesh>, points: impl Iterator<Item = DVec3>,
         if count.x.saturating_mul(count.y).saturating_mul(count.z) > MOST_CELLS {
             return true;
         }
-        (low.x..=high.x).any(|x| {
-            (low.y..=high.y).any(|y| (low.z..=high.z).any(|z| near.contains(&I64Vec3::new(x, y, z))))
-        })
+        (low.x..=high.x)
+            .any(|x| (low.y..=high.y).any(|y| (low.z..=high.z).any(|z| near.contains(&I64Vec3::new(x, y, z)))))
     };
     let faces: Vec<FaceId> = (0..mesh.face_count()).into_par_iter().map(FaceId::from).filter(touches).collect();
     TriBvh::build_subset(mesh, &faces).ok().filter(|t| t.face_count() > 0)

@@ -51,7 +51,8 @@ fn walk(mesh: &Connected<TriMesh>, start: HalfedgeId, from: DVec3) -> Option<f64
         p += step * direction;
         length += step;
         let twin = mesh.twin(out);
-        let Some(next) = twin.filter(|_| dihedral_angle(mesh, out).is_some_and(|a| a.to_degrees().abs() < CREASE)) else {
+        let Some(next) = twin.filter(|_| dihedral_angle(mesh, out).is_some_and(|a| a.to_degrees().abs() < CREASE))
+        else {
             return Some(length);
         };
         // Unfolded: the direction keeps its angle with the edge.

@@ -67,7 +67,9 @@ fn edges_that_meet_in_pairs_are_one_curve() {
     let params = round::Params {
         features: features::Params::default(),
         choice: Choice {
-            near: [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y].map(|side| (0.5 * (side + DVec3::Z)).into()).to_vec(),
+            near: [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y]
+                .map(|side| (0.5 * (side + DVec3::Z)).into())
+                .to_vec(),
             ..Choice::default()
         },
         blend: Params { overlap: Overlap::Error, ..Params::new(0.1) },

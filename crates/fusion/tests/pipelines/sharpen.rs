@@ -70,7 +70,12 @@ fn a_post_stands_on_its_plate_again() {
     let post = shapes::posed(shapes::cylinder(1.0, 2.0, 48, 2), DQuat::IDENTITY, DVec3::new(0.01, 0.02, 0.25));
     let parts = [Model::from(plate), Model::from(post)];
     let joined = |blend| {
-        let params = join::Params { operation: fusion::Operation::Union, blend, seams: join::SeamChoice::default(), format: Format::Off };
+        let params = join::Params {
+            operation: fusion::Operation::Union,
+            blend,
+            seams: join::SeamChoice::default(),
+            format: Format::Off,
+        };
         fusion::join(&parts, &params, &Watch::default()).unwrap().model
     };
     let (plain, filleted) = (joined(None), joined(Some(blend::Params::new(0.2))));
