@@ -163,7 +163,7 @@ fn sha256(bytes: &[u8]) -> String {
 
 /// The first 32 bits of the fractions of roots of the first primes.
 fn fractions(count: usize, root: fn(f64) -> f64) -> Vec<u32> {
-    let is_prime = |n: &u32| (2..*n).take_while(|d| d * d <= *n).all(|d| n % d != 0);
+    let is_prime = |n: &u32| (2..*n).take_while(|d| d * d <= *n).all(|d| !n.is_multiple_of(d));
     (2..).filter(is_prime).take(count).map(|p| (root(f64::from(p)).fract() * 2f64.powi(32)) as u32).collect()
 }
 

@@ -49,7 +49,7 @@ pub struct Common {
     /// Say nothing but errors
     #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Common options")]
     pub quiet: bool,
-    /// Say what each stage did and how long it took
+    /// Say what was chosen, what each stage did and how long it took
     #[arg(short, long, global = true, help_heading = "Common options")]
     pub verbose: bool,
     /// Count any warning as a failure: exit code 4, and no output

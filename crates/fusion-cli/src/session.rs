@@ -184,6 +184,9 @@ impl Session {
         for warning in told(&report.warnings) {
             self.warn(&warning);
         }
+        for note in &report.notes {
+            self.note(note);
+        }
         for stage in &report.stages {
             self.note(&format!("{:<24} {:>10.3} ms", stage.name, stage.milliseconds));
         }

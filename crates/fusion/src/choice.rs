@@ -334,7 +334,9 @@ fn seams(mesh: &Connected<TriMesh>, parts: &[Option<u32>]) -> Result<Vec<BlendCu
     let (mut from, mut meeting): (BTreeMap<_, Vec<_>>, BTreeMap<VertexId, u32>) = Default::default();
     for &h in &edges {
         from.entry(mesh.tail(h)).or_default().push(h);
-        [mesh.tail(h), mesh.head(h)].into_iter().for_each(|v| *meeting.entry(v).or_default() += 1);
+        for v in [mesh.tail(h), mesh.head(h)] {
+            *meeting.entry(v).or_default() += 1;
+        }
     }
     let mut left: BTreeSet<HalfedgeId> = edges.iter().copied().collect();
     let mut curves = vec![];

@@ -140,10 +140,8 @@ impl Diagnostic {
     /// The curve that a point names.
     pub(crate) fn curve_taken(point: DVec3, what: &str, id: usize, place: DVec3, distance: f64, far: f64) -> Self {
         let message = format!("the {what} nearest to {point} is {id}, {distance:.4e} away at {place}");
-        let (code, severity) = match distance > far {
-            true => (Code::CurveFar, Severity::Warning),
-            false => (Code::CurveTaken, Severity::Note),
-        };
+        let (code, severity) =
+            if distance > far { (Code::CurveFar, Severity::Warning) } else { (Code::CurveTaken, Severity::Note) };
         let told = Self::new(code, severity, message).at(place).with("curve", id as f64).with("distance", distance);
         if distance > far { told.remedy("name a point on the curve, or the curve by its id") } else { told }
     }

@@ -81,7 +81,9 @@ fn overlay_all(
         }
     }
     if let Some(taken) = taken {
-        taken.told.into_iter().for_each(|t| report.tell(t));
+        for diagnostic in taken.told {
+            report.tell(diagnostic);
+        }
     }
     finish(parts, whole.mesh.into_mesh(), whole.origins, params.format, report, watch)
 }
@@ -216,7 +218,9 @@ fn overlay(
         let message = "the surfaces do not cross: the solids are apart, or one holds the other";
         report.tell(Diagnostic::new(Code::Apart, Severity::Warning, message));
     }
-    cut.report.warnings.iter().for_each(|w| report.tell(told(w)));
+    for warning in &cut.report.warnings {
+        report.tell(told(warning));
+    }
     Ok(cut)
 }
 

@@ -138,12 +138,18 @@ fn account(blended: &Blended, params: &blend::Params, report: &mut Report) {
             ),
         });
     }
-    blended.run_outs.iter().for_each(|&at| report.tell(Diagnostic::run_out(at)));
-    blended.fallbacks.iter().for_each(|&(at, what)| report.tell(Diagnostic::blended_as_field(at, what)));
+    for &at in &blended.run_outs {
+        report.tell(Diagnostic::run_out(at));
+    }
+    for &(at, what) in &blended.fallbacks {
+        report.tell(Diagnostic::blended_as_field(at, what));
+    }
     // The worst first: of many, the program shows these alone.
     let mut shrunk = blended.shrunk.clone();
     shrunk.sort_by(|a, b| a.1.total_cmp(&b.1));
-    shrunk.into_iter().for_each(|(at, used)| report.tell(Diagnostic::radius_reduced(at, params.radius, used)));
+    for (at, used) in shrunk {
+        report.tell(Diagnostic::radius_reduced(at, params.radius, used));
+    }
 }
 
 #[cfg(test)]

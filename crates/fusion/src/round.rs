@@ -89,7 +89,9 @@ fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch)
         .time("connect", || Connected::new(part.mesh.clone()))
         .map_err(|source| Error::NotManifold { part: 0, source })?;
     let (chosen, told) = report.time("features", || choose(&mesh, &params.features, &params.choice))?;
-    told.into_iter().for_each(|t| report.tell(t));
+    for diagnostic in told {
+        report.tell(diagnostic);
+    }
     let (curves, wholes) = joined(&mesh, &chosen);
     let how = &with_own_radii(&mesh, &chosen, how);
     let parts = chosen.into_iter().zip(wholes).map(|(chosen, whole)| Part {

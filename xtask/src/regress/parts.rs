@@ -206,7 +206,7 @@ mod tests {
         bytes.extend((header.len() as u16).to_le_bytes());
         bytes.extend(header.bytes());
         assert!(read_points(&bytes).unwrap().is_empty());
-        [1.0f32, 2.0, 3.0, 4.0, 5.0, 6.5].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+        bytes.extend([1.0f32, 2.0, 3.0, 4.0, 5.0, 6.5].iter().flat_map(|x| x.to_le_bytes()));
         assert_eq!(read_points(&bytes).unwrap(), [DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.5)]);
         assert!(read_points(b"NUMPY").is_err());
     }

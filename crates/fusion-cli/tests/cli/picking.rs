@@ -54,6 +54,8 @@ fn near_copied_from_the_list_takes_the_listed_curve() {
         assert_eq!(report["diagnostics"][0]["code"], "curve_taken");
         assert!(report["notes"][0].as_str().unwrap().contains(&format!("is {id},")), "{}", report["notes"]);
     }
+    let told = bench.run("blend a.off -o out.off --radius 0.1 --near 0.5,0.5,0 -v").expect(0);
+    assert!(told.stderr.contains("the feature curve nearest to [0.5, 0.5, 0] is"), "{}", told.stderr);
     let far = bench.run("blend a.off -o out.off --radius 0.1 --near 0.7,0.6,0 --report r.json").expect(0);
     let report = json(&bench.read("r.json"));
     assert!(far.stderr.contains("the feature curve nearest to [0.7, 0.6, 0] is"), "{}", far.stderr);

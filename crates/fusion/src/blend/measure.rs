@@ -56,7 +56,9 @@ pub(crate) fn measure(
     let samples = along.samples(mesh, curves, blended);
     let overall = quantiles(samples.iter().map(|s| (s.error, s.weight)).collect());
     let mut own: Vec<Vec<Sample>> = curves.iter().map(|_| vec![]).collect();
-    samples.into_iter().for_each(|s| own[s.curve].push(s));
+    for sample in samples {
+        own[sample.curve].push(sample);
+    }
     let sharp = edges_left(mesh, curves, blended);
     let measured = own.into_par_iter().enumerate().map(|(i, own)| along.sum_up(mesh, &curves[i], i, &own, &sharp));
     (measured.collect(), overall)
@@ -71,6 +73,8 @@ struct Sample {
     /// The error of the smooth surface around the vertex that fits the ball best: the same but on creases.
     smooth_error: f64,
     weight: f64,
+    /// Whether the ball reaches into the surface at which its curve stops: within a radius of there, it says nothing.
+    at_stop: bool,
 }
 
 /// Edges of all curves as faces without width, for the nearest of them.
@@ -119,7 +123,9 @@ impl Along {
                     areas[v.index()] += vector.length() / 3.0;
                 }
             } else if new != [false; 3] {
-                corners.iter().for_each(|v| inside[v.index()] = false);
+                for v in corners {
+                    inside[v.index()] = false;
+                }
             }
         }
         let creased = on_creases(&made, &normals, &inside);
@@ -146,9 +152,29 @@ impl Along {
             let error = centers(place).map(miss).into_iter().fold(f64::INFINITY, f64::min);
             let smooth = creased.get(&v).into_iter().flatten();
             let smooth = smooth.flat_map(|&n| centers(&(v, curve, at, n))).map(miss).fold(error, f64::min);
-            Sample { curve, at, error, smooth_error: smooth, weight: areas[v] }
+            let ahead = self.ahead(mesh, &curves[curve], curve, at);
+            let stops = |c: DVec3| {
+                let near = surface.closest_point(mesh, c)?;
+                Some(near.distance < r && (near.point - c).dot(ahead?) > 0.5 * near.distance)
+            };
+            let at_stop = smooth > FULL && centers(place).into_iter().any(|c| stops(c) == Some(true));
+            Sample { curve, at, error, smooth_error: smooth, weight: areas[v], at_stop }
         };
         placed.par_iter().map(sample).collect()
+    }
+
+    /// The direction in which an open curve runs into its nearer end, within a radius and a half of that.
+    fn ahead(&self, mesh: &Connected<TriMesh>, curve: &Curve<'_>, index: usize, at: f64) -> Option<DVec3> {
+        let (&first, &last) = (curve.halfedges.first()?, curve.halfedges.last()?);
+        let (reach, length) = (1.5 * curve.radius, self.lengths[index]);
+        let along = |h: HalfedgeId| {
+            let [a, b] = mesh.ends(h);
+            (b - a).normalize_or_zero()
+        };
+        if mesh.tail(first) == mesh.head(last) || at.min(length - at) > reach {
+            return None;
+        }
+        Some(if at < 0.5 * length { -along(first) } else { along(last) })
     }
 
     fn sum_up(
@@ -166,7 +192,7 @@ impl Along {
         let pieces = ((length / (PIECE * curve.radius)).ceil() as usize).clamp(1, MOST_PIECES);
         let piece_of = |at: f64| ((at / length * pieces as f64) as usize).min(pieces - 1);
         let mut weights = vec![[0.0; 2]; pieces];
-        for s in own {
+        for s in own.iter().filter(|s| !s.at_stop) {
             let [full, all] = &mut weights[piece_of(s.at)];
             *all += s.weight;
             *full += if s.smooth_error <= FULL { s.weight } else { 0.0 };
@@ -195,10 +221,11 @@ impl Along {
             let sides = known[after.saturating_sub(1)..].iter().take(if after == 0 { 1 } else { 2 });
             sides.map(|&k| share(k)).fold(1.0, f64::min)
         };
-        let full: f64 = (0..pieces).map(|i| of(i) * (piece - left[i]).max(0.0)).sum();
+        // What is missing, since this is exactly 0 where nothing is.
+        let missing: f64 = (0..pieces).map(|i| piece - of(i) * (piece - left[i]).max(0.0)).sum();
         Measured {
             ball_error: quantiles(own.iter().map(|s| (s.error, s.weight)).collect()),
-            full_share: (!known.is_empty()).then(|| (full / length).clamp(0.0, 1.0)),
+            full_share: (!known.is_empty()).then(|| (1.0 - missing / length).clamp(0.0, 1.0)),
             blended_share: (1.0 - sharp_length / length).clamp(0.0, 1.0),
         }
     }
