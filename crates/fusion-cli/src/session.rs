@@ -56,7 +56,9 @@ impl Session {
         if !self.common.strict || report.warnings.is_empty() {
             return Ok(());
         }
-        told(&report.warnings).iter().for_each(|warning| self.warn(warning));
+        for warning in told(&report.warnings) {
+            self.warn(&warning);
+        }
         Err(Failure::strict(report))
     }
 

@@ -5,6 +5,7 @@ use fusion::mesh_core::shapes;
 use glam::{DQuat, DVec3};
 use serde_json::Value;
 use std::f64::consts::FRAC_PI_4;
+use std::fmt::Write as _;
 
 const RADIUS: f64 = 0.1;
 
@@ -102,10 +103,14 @@ fn a_chain_goes_on_where_the_surface_does() {
     let outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0 - 20f64.to_radians().tan()], [1.0, 1.0], [0.0, 1.0]];
     let mut text = String::from("OFF\n10 7 0\n");
     for y in [0.0, 1.0] {
-        outline.iter().for_each(|[x, z]| text += &format!("{x:?} {y:?} {z:?}\n"));
+        for [x, z] in outline {
+            writeln!(text, "{x:?} {y:?} {z:?}").unwrap();
+        }
     }
     text += "5 0 1 2 3 4\n5 9 8 7 6 5\n";
-    (0..5).for_each(|i| text += &format!("4 {i} {} {} {}\n", 5 + i, 5 + (i + 1) % 5, (i + 1) % 5));
+    for i in 0..5 {
+        writeln!(text, "4 {i} {} {} {}", 5 + i, 5 + (i + 1) % 5, (i + 1) % 5).unwrap();
+    }
     bench.file("roof.off", &text);
     let chosen = |options: &str| {
         let line = "blend roof.off -o out.off --radius 0.05 --angle 15 --near 0.5,0,1 --report r.json";
