@@ -76,7 +76,7 @@ fn edges_that_meet_in_pairs_are_one_curve() {
         format: Format::Ply,
     };
     let figures = round::round(&cube, &params, &Watch::default()).unwrap().report.figures;
-    assert_eq!(["curves", "strips", "corners"].map(|f| figures[f]), [1.0, 1.0, 0.0]);
+    assert_eq!(["curves", "strips", "corners"].map(|f| figures[f]), [4.0, 1.0, 0.0]);
 }
 
 #[test]
