@@ -5,12 +5,14 @@
 //! | `ci.rs` | everything a change must pass, in order |
 //! | `regress/` | cases against approved records, real models in bulk |
 //! | `fixtures.rs`, `models.rs` | the parts of all cases and recipes as files |
+//! | `collect.rs` | real models from where they come from |
 //! | `bench.rs` | benchmarks into a page |
 //! | `pages.rs` | what stands between marks on a page |
 //! | `tidy.rs` | crate arrows, file lengths, citations, paths, pages that are stale |
 
 mod bench;
 mod ci;
+mod collect;
 mod fixtures;
 mod models;
 mod pages;
@@ -40,6 +42,8 @@ enum Chore {
     Bench(bench::Options),
     /// Writes the parts of all regression cases as files
     Fixtures(fixtures::Options),
+    /// Collects the real models behind the tables in docs/ into a folder, and checks that they are the ones measured
+    Models(collect::Options),
     /// Writes the keys of recipes into docs/recipes.md
     Reference,
     /// Runs the cases of fixtures/ against their approved records; with --models also real models
@@ -53,6 +57,7 @@ fn main() -> ExitCode {
         Chore::Ci => ci::run(),
         Chore::Bench(options) => bench::run(&options),
         Chore::Fixtures(options) => fixtures::run(&options),
+        Chore::Models(options) => collect::run(&options),
         Chore::Reference => pages::RECIPES.renew(&fusion::recipe::reference()),
         Chore::Regress(options) => regress::run(&options),
         Chore::Tidy => tidy::run(),

@@ -1,17 +1,19 @@
 //! What can be typed.
 
+use crate::choosing::{Choosing, ChoosingSeams};
 use crate::clustering::Cluster;
 use crate::composing::Compose;
 use crate::cutting::{Cut, spread_path};
 use crate::detailing::Detail;
-use crate::length::{Length, Radius, angle, angle_or_none, direction, point, positive_length, radius};
+use crate::length::{Length, Radius, angle, angle_or_none, direction, positive_length, radius, seconds};
 use crate::place::Place;
 use crate::rolling::Rolling;
 use crate::smoothing::Way;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Joins and blends triangle meshes.
 #[derive(Parser)]
@@ -32,6 +34,7 @@ own validation; 6 the output cannot be written; 130 cancelled. Any code but 0 le
 
 /// Options of every verb.
 #[derive(Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag that can be typed")]
 pub struct Common {
     /// Write a machine-readable report of the job (docs/report.md lists its keys)
     #[arg(long, value_name = "FILE.json", global = true, help_heading = "Common options")]
@@ -40,15 +43,21 @@ pub struct Common {
     #[arg(long, value_name = "N", global = true, help_heading = "Common options",
           value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Show no progress bars, even on a terminal
+    /// Show no progress: neither a bar on a terminal nor a line every five seconds elsewhere
     #[arg(long, global = true, help_heading = "Common options")]
     pub no_progress: bool,
     /// Say nothing but errors
     #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Common options")]
     pub quiet: bool,
-    /// Say what each stage did and how long it took
+    /// Say what was chosen, what each stage did and how long it took
     #[arg(short, long, global = true, help_heading = "Common options")]
     pub verbose: bool,
+    /// Count any warning as a failure: exit code 4, and no output
+    #[arg(long, global = true, help_heading = "Common options")]
+    pub strict: bool,
+    /// Stop with exit code 4 after this many seconds
+    #[arg(long, value_name = "S", global = true, help_heading = "Common options", value_parser = seconds)]
+    pub time_limit: Option<Duration>,
 }
 
 #[derive(Subcommand)]
@@ -65,8 +74,12 @@ pub enum Verb {
     Difference(Join),
     /// Keep what all solids share
     Intersection(Join),
-    /// Roll a ball along feature curves and put in the surface it leaves
+    /// Fillet feature curves with a rolling ball; `chamfer` stands for `blend --profile chamfer`
+    #[command(visible_alias = "fillet")]
     Blend(Blend),
+    /// Chamfer feature curves: `blend --profile chamfer`
+    #[command(hide = true)]
+    Chamfer(Blend),
     /// Join the openings of parts by one smooth surface, leaving the parts as they are
     Compose(Compose),
     /// Give a smooth region the geometry detail of another
@@ -87,6 +100,31 @@ pub enum Verb {
     Completions(Completions),
     /// Print the manual page, or write one for every verb
     Man(Man),
+}
+
+impl Verb {
+    /// Its name, as typed.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Info(_) => "info",
+            Self::Convert(_) => "convert",
+            Self::Features(_) => "features",
+            Self::Union(_) => "union",
+            Self::Difference(_) => "difference",
+            Self::Intersection(_) => "intersection",
+            Self::Blend(_) | Self::Chamfer(_) => "blend",
+            Self::Compose(_) => "compose",
+            Self::Detail(_) => "detail",
+            Self::Cluster(_) => "cluster",
+            Self::Remesh(_) => "remesh",
+            Self::Cut(_) => "cut",
+            Self::Run(_) => "run",
+            Self::Render(_) => "render",
+            Self::Demo(_) => "demo",
+            Self::Completions(_) => "completions",
+            Self::Man(_) => "man",
+        }
+    }
 }
 
 /// How standard input is read.
@@ -162,26 +200,30 @@ pub struct Features {
 }
 
 #[derive(Args)]
+#[command(group(ArgGroup::new("ball").multiple(true)))]
 pub struct Join {
     /// The solids, two or more, as they are posed in their files
     #[arg(required = true, num_args = 2.., value_name = "MESH")]
     pub inputs: Vec<PathBuf>,
     #[command(flatten)]
-    pub target: Target,
+    pub target: OptionalTarget,
     #[command(flatten)]
     pub source: Source,
     /// Blend the seam with a ball of this radius; with `R1,R2` its centre keeps R1 from the first part and R2 from the
     /// other
-    #[arg(long, value_name = "R[,R2]", value_parser = radius)]
+    #[arg(long, value_name = "R[,R2]", value_parser = radius, group = "ball")]
     pub radius: Option<Radius>,
+    #[command(flatten)]
+    pub limit: MaxRadius,
+    #[command(flatten)]
+    pub choosing: ChoosingSeams,
     #[command(flatten)]
     pub rolling: Rolling,
 }
 
+/// Where a mesh goes, if one is made.
 #[derive(Args)]
-pub struct Blend {
-    /// The mesh to blend
-    pub input: PathBuf,
+pub struct OptionalTarget {
     /// Write the result here, or to standard output for `-`
     #[arg(short, long, value_name = "OUTPUT", required_unless_present = "max_radius")]
     pub output: Option<PathBuf>,
@@ -191,30 +233,48 @@ pub struct Blend {
     /// Write where every vertex and face of the result came from, as JSON
     #[arg(long, value_name = "FILE.json")]
     pub origins: Option<PathBuf>,
-    #[command(flatten)]
-    pub source: Source,
-    /// Radius of the ball; with `R1,R2` its centre keeps R1 from the side to the left of a curve and R2 from the other,
-    /// seen from outside along the points that `features` lists. With `--profile sharp --near` on a fillet: what is rounded by
-    /// R or less is taken back to an edge [default there: as it is rounded at that place]
-    #[arg(long, value_name = "R[,R2]", value_parser = radius)]
-    pub radius: Option<Radius>,
+}
+
+impl OptionalTarget {
+    /// The target, if there is an output.
+    pub fn target(&self) -> Option<Target> {
+        let output = self.output.clone()?;
+        Some(Target { output, to: self.to.clone(), origins: self.origins.clone() })
+    }
+}
+
+/// A question for the largest radius.
+#[derive(Args)]
+pub struct MaxRadius {
     /// Print the largest radius with which the curves can be blended, and what is in the way of a larger one; write nothing
     #[arg(long, conflicts_with_all = ["radius", "output"])]
     pub max_radius: bool,
     /// Print JSON instead of a sentence, with --max-radius
     #[arg(long, requires = "max_radius")]
     pub json: bool,
+}
+
+#[derive(Args)]
+#[command(group(ArgGroup::new("ball").multiple(true)))]
+pub struct Blend {
+    /// The mesh to blend
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub target: OptionalTarget,
+    #[command(flatten)]
+    pub source: Source,
+    /// Radius of the ball; with `R1,R2` its centre keeps R1 from the side to the left of a curve and R2 from the other,
+    /// seen from outside along the points that `features` lists. With `--profile sharp --near` on a fillet: what is rounded by
+    /// R or less is taken back to an edge [default there: as it is rounded at that place]
+    #[arg(long, value_name = "R[,R2]", value_parser = radius, group = "ball")]
+    pub radius: Option<Radius>,
+    #[command(flatten)]
+    pub limit: MaxRadius,
     /// Least angle between the normals of two neighbouring faces that makes their edge a feature
     #[arg(long, value_name = "DEG", default_value = "40", value_parser = angle)]
     pub angle: f64,
-    /// Blend only the feature curve nearest this point; may be given more than once. With `--profile sharp`, a place on a
-    /// fillet
-    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
-    pub near: Vec<DVec3>,
-    /// Blend the curves in this file, as `features -o` writes them: points at vertices, or far apart, to be joined by the
-    /// cheapest way along sharp edges
-    #[arg(long, value_name = "CURVES.json")]
-    pub curves: Option<PathBuf>,
+    #[command(flatten)]
+    pub choosing: Choosing,
     #[command(flatten)]
     pub rolling: Rolling,
 }

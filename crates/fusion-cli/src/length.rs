@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use std::str::FromStr;
+use std::time::Duration;
 
 /// A length in model units, or a share of the diagonal of the box around all inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +57,13 @@ pub struct Radius {
     pub sides: [Length; 2],
 }
 
+impl Radius {
+    /// Both in model units.
+    pub fn resolve(self, diagonal: f64) -> [f64; 2] {
+        self.sides.map(|r| r.resolve(diagonal))
+    }
+}
+
 /// A radius, or two with a comma between.
 pub fn radius(text: &str) -> Result<Radius, String> {
     let (left, right) = text.split_once(',').unwrap_or((text, text));
@@ -66,6 +74,20 @@ pub fn radius(text: &str) -> Result<Radius, String> {
 pub fn radius_at(text: &str) -> Result<(DVec3, Length), String> {
     let (at, radius) = text.split_once('=').ok_or("a radius at a place is X,Y,Z=R, such as 0,1.5,-2=0.25")?;
     Ok((point(at)?, positive_length(radius)?))
+}
+
+/// A point, and a radius where it is given: `x,y,z` or `x,y,z=R`.
+pub fn near(text: &str) -> Result<(DVec3, Option<Length>), String> {
+    match text.split_once('=') {
+        Some(_) => radius_at(text).map(|(at, radius)| (at, Some(radius))),
+        None => Ok((point(text)?, None)),
+    }
+}
+
+/// A time in seconds, above zero.
+pub fn seconds(text: &str) -> Result<Duration, String> {
+    let limit = text.parse().ok().filter(|&s: &f64| s > 0.0).and_then(|s| Duration::try_from_secs_f64(s).ok());
+    limit.ok_or_else(|| "a time is a number of seconds above zero".into())
 }
 
 /// An angle from −90 to 90 degrees.

@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `args.rs`, `rolling.rs`, `clustering.rs`, `composing.rs`, `cutting.rs`, `detailing.rs`, `smoothing.rs`, `length.rs`, `place.rs` | what can be typed |
+//! | `args.rs`, `choosing.rs`, `rolling.rs`, `clustering.rs`, `composing.rs`, `cutting.rs`, `detailing.rs`, `smoothing.rs`, `length.rs`, `place.rs` | what can be typed |
 //! | `failure.rs` | exit codes |
 //! | `session.rs` | one command: reading, progress, messages, writing |
 //! | `text_file.rs` | files of curves, clusters, profiles and the like |
@@ -11,6 +11,7 @@
 //! | `verbs/` | one file per verb |
 
 mod args;
+mod choosing;
 mod clustering;
 mod composing;
 mod cutting;
@@ -54,24 +55,30 @@ fn run(cli: Cli) -> Result<(), Failure> {
             .build_global()
             .map_err(|e| Failure::usage(format!("cannot start {threads} threads: {e}")))?;
     }
-    let session = Session::start(cli.common)?;
-    match cli.verb {
-        Verb::Info(args) => verbs::info::run(&session, &args),
-        Verb::Convert(args) => verbs::convert::run(&session, &args),
-        Verb::Features(args) => verbs::features::run(&session, &args),
-        Verb::Union(args) => verbs::join::run(&session, &args, Operation::Union),
-        Verb::Difference(args) => verbs::join::run(&session, &args, Operation::Difference),
-        Verb::Intersection(args) => verbs::join::run(&session, &args, Operation::Intersection),
-        Verb::Compose(args) => verbs::compose::run(&session, &args),
-        Verb::Remesh(args) => verbs::remesh::run(&session, &args),
-        Verb::Cut(args) => verbs::cut::run(&session, &args),
-        Verb::Run(args) => verbs::run::run(&session, &args),
-        Verb::Render(args) => verbs::render::run(&session, &args),
+    let name = cli.verb.name();
+    let session = Session::start(cli.common, name)?;
+    session.close(dispatch(&session, cli.verb))
+}
+
+fn dispatch(session: &Session, verb: Verb) -> Result<(), Failure> {
+    match verb {
+        Verb::Info(args) => verbs::info::run(session, &args),
+        Verb::Convert(args) => verbs::convert::run(session, &args),
+        Verb::Features(args) => verbs::features::run(session, &args),
+        Verb::Union(args) => verbs::join::run(session, &args, Operation::Union),
+        Verb::Difference(args) => verbs::join::run(session, &args, Operation::Difference),
+        Verb::Intersection(args) => verbs::join::run(session, &args, Operation::Intersection),
+        Verb::Compose(args) => verbs::compose::run(session, &args),
+        Verb::Remesh(args) => verbs::remesh::run(session, &args),
+        Verb::Cut(args) => verbs::cut::run(session, &args),
+        Verb::Run(args) => verbs::run::run(session, &args),
+        Verb::Render(args) => verbs::render::run(session, &args),
         Verb::Completions(args) => verbs::completions::run(&args),
-        Verb::Man(args) => verbs::man::run(&session, &args),
-        Verb::Demo(args) => verbs::demo::run(&session, &args),
-        Verb::Detail(args) => verbs::detail::run(&session, &args),
-        Verb::Cluster(args) => verbs::cluster::run(&session, &args),
-        Verb::Blend(args) => verbs::blend::run(&session, &args),
+        Verb::Man(args) => verbs::man::run(session, &args),
+        Verb::Demo(args) => verbs::demo::run(session, &args),
+        Verb::Detail(args) => verbs::detail::run(session, &args),
+        Verb::Cluster(args) => verbs::cluster::run(session, &args),
+        Verb::Blend(args) => verbs::blend::run(session, &args),
+        Verb::Chamfer(args) => verbs::blend::run_chamfer(session, args),
     }
 }

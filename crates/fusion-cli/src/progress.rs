@@ -1,9 +1,10 @@
-//! Progress bars on a terminal, and Ctrl-C.
+//! Progress bars on a terminal and lines elsewhere, Ctrl-C, and the time limit.
 
+use crate::failure::Failure;
 use fusion::mesh_core::Watch;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, Write};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -20,23 +21,36 @@ pub fn hold_cancel() -> MutexGuard<'static, ()> {
     WRITING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Where there is no terminal, a line is printed this often.
+const LINES: Duration = Duration::from_secs(5);
+
 /// The bar of one command. Dropping it wipes the line.
 pub struct Progress {
     bar: ProgressBar,
+    start: Instant,
+    /// Set once the time limit has ended the job.
+    late: Arc<AtomicBool>,
     /// What long loops report to.
     pub watch: Watch,
 }
 
 impl Progress {
-    /// A bar on standard error if that is a terminal and `wanted`; Ctrl-C cancels its watch.
-    pub fn start(wanted: bool) -> Self {
+    /// A bar on standard error if that is a terminal, else lines, if `wanted`; Ctrl-C and the end of `limit` cancel its watch.
+    /// A job that does not stop within a second of that limit is ended, after `give_up`.
+    pub fn start(wanted: bool, limit: Option<Duration>, give_up: impl Fn(&Failure) + Send + 'static) -> Self {
+        let start = Instant::now();
         let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::hidden());
-        let watch = if wanted && std::io::stderr().is_terminal() {
-            let style = ProgressStyle::with_template("{msg:24} {bar:40} {percent:>3}% {elapsed}");
-            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-            Watch::new(painter(bar.clone()))
-        } else {
-            Watch::default()
+        let watch = match (wanted, std::io::stderr().is_terminal()) {
+            (false, _) => Watch::default(),
+            (true, true) => {
+                let style = ProgressStyle::with_template("{msg:24} {bar:40} {percent:>3}% {elapsed}");
+                bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+                Watch::new(painter(bar.clone()))
+            }
+            (true, false) => Watch::new(liner(LINES, |line| {
+                // A closed standard error is no reason to stop.
+                let _ = writeln!(std::io::stderr(), "{line}");
+            })),
         };
         let stop = watch.clone();
         // Without a handler Ctrl-C still ends the process, only less politely.
@@ -48,7 +62,29 @@ impl Progress {
             let _ = writeln!(std::io::stderr(), "error: cancelled");
             std::process::exit(130);
         });
-        Self { bar, watch }
+        let late = Arc::new(AtomicBool::new(false));
+        if let Some(limit) = limit {
+            let (stop, late) = (watch.clone(), Arc::clone(&late));
+            std::thread::spawn(move || {
+                std::thread::sleep(limit);
+                late.store(true, Ordering::Relaxed);
+                stop.cancel();
+                std::thread::sleep(GRACE);
+                let finished = hold_cancel();
+                let failure = Failure::late(start.elapsed());
+                drop(finished);
+                give_up(&failure);
+                let _finished = hold_cancel();
+                failure.say();
+                std::process::exit(failure.code().into());
+            });
+        }
+        Self { bar, start, late, watch }
+    }
+
+    /// How long the job has run, if the time limit has ended it.
+    pub fn late(&self) -> Option<Duration> {
+        self.late.load(Ordering::Relaxed).then(|| self.start.elapsed())
     }
 }
 
@@ -80,5 +116,36 @@ fn painter(bar: ProgressBar) -> impl Fn(&'static str, f64) + Send + Sync + 'stat
         }
         bar.set_message(stage);
         bar.set_position((1000.0 * share.clamp(0.0, 1.0)) as u64);
+    }
+}
+
+/// Gives a line with the stage and its share at most this often.
+fn liner(every: Duration, print: impl Fn(String) + Send + Sync + 'static) -> impl Fn(&'static str, f64) + Send + Sync {
+    let start = Instant::now();
+    let every = every.as_millis() as u64;
+    let next = AtomicU64::new(every);
+    move |stage, share| {
+        let now = start.elapsed().as_millis() as u64;
+        let due = next.load(Ordering::Relaxed);
+        if now >= due && next.compare_exchange(due, now + every, Ordering::Relaxed, Ordering::Relaxed).is_ok() {
+            print(format!("{stage} {:.0} %", 100.0 * share.clamp(0.0, 1.0)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_come_at_their_pace() {
+        let lines = Arc::new(Mutex::new(vec![]));
+        let kept = Arc::clone(&lines);
+        let tell = liner(Duration::from_millis(40), move |line| kept.lock().unwrap().push(line));
+        tell("blend", 0.1);
+        std::thread::sleep(Duration::from_millis(50));
+        tell("blend", 0.404);
+        tell("blend", 0.5);
+        assert_eq!(*lines.lock().unwrap(), ["blend 40 %"]);
     }
 }

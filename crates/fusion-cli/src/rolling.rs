@@ -1,7 +1,7 @@
 //! How a ball is rolled, as typed: the options that `blend` and the booleans share.
 
 use crate::failure::Failure;
-use crate::length::{Length, Radius, point, radius_at};
+use crate::length::{Length, point, radius_at};
 use crate::output::{self, Outputs};
 use crate::text_file::read_text;
 use clap::{Args, ValueEnum};
@@ -21,43 +21,45 @@ pub struct Rolling {
     pub profile: Option<Section>,
     /// The radius at the place of a curve nearest to X,Y,Z; may be given more than once. Between such places it changes
     /// smoothly, to that of --radius at the ends of an open curve and half-way round a closed one with a single place
-    #[arg(long, value_name = "X,Y,Z=R", value_parser = radius_at, requires = "radius", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z=R", value_parser = radius_at, requires = "ball", allow_hyphen_values = true)]
     pub radius_at: Vec<(DVec3, Length)>,
     /// The cross-section at the place of a curve nearest to X,Y,Z; may be given more than once. Between such places, and to
     /// that of --profile at the ends of an open curve and half-way round a closed one with a single place, one changes
     /// smoothly into the other
-    #[arg(long, value_name = "X,Y,Z=PROFILE", value_parser = profile_at, requires = "radius", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z=PROFILE", value_parser = profile_at, requires = "ball", allow_hyphen_values = true)]
     pub profile_at: Vec<(DVec3, Curve)>,
-    /// What to do where a full-size ball does not fit
-    #[arg(long, value_enum, default_value_t = Overlap::Shrink, requires = "radius")]
+    /// What to do where a ball of the full radius does not fit: `full` keeps the radius and puts in the envelope of all balls
+    /// that fit, with a smaller radius along a whole curve or none at all as the last resort; `shrink` uses a smaller radius
+    /// there and fades into the full one; `error` stops with the place and a radius that works
+    #[arg(long, value_name = "OVERLAP", default_value = "full", value_parser = overlap, requires = "ball")]
     pub overlap: Overlap,
     /// What finds the way of the ball's centre
-    #[arg(long, value_enum, default_value_t = Spine::Contact, requires = "radius")]
+    #[arg(long, value_enum, default_value_t = Spine::Contact, requires = "ball")]
     pub spine: Spine,
     /// How the surface is put in: `stitch` cuts along the ball's contact curves and sews in the sweep; `field` cuts along
     /// level sets and draws what is between onto the balls, which cannot fold; `auto` stitches, and takes the field where
     /// that fails; `keep` moves the mesh's own vertices onto the sweep, all faces kept
-    #[arg(long, value_name = "SURFACE", default_value = "auto", value_parser = surface, requires = "radius")]
+    #[arg(long, value_name = "SURFACE", default_value = "auto", value_parser = surface, requires = "ball")]
     pub surface: Surface,
     /// Least reach of the two sides the ball rolls on, in radii; grows by itself where more is needed
-    #[arg(long, value_name = "RADII", default_value = "1.75", value_parser = alpha, requires = "radius")]
+    #[arg(long, value_name = "RADII", default_value = "1.75", value_parser = alpha, requires = "ball")]
     pub alpha: f64,
     /// Largest distance of the blend's chords from its cross-section, as a share of the radius
-    #[arg(long, value_name = "SHARE", default_value = "0.005", value_parser = tolerance, requires = "radius")]
+    #[arg(long, value_name = "SHARE", default_value = "0.005", value_parser = tolerance, requires = "ball")]
     pub tolerance: f64,
     /// Blend on the coarsest level of a decimation hierarchy that is fine enough for the radius, and put the finer levels'
     /// details back; with `--surface keep`
-    #[arg(long, requires_all = ["radius", "surface"])]
+    #[arg(long, requires_all = ["ball", "surface"])]
     pub multiresolution: bool,
     /// Write what the stages of the blend drew into this folder as OBJ files: the ball's way, the contact curves,
     /// profiles, patches and surfaces, even where the blend is refused (docs/blend.md lists them)
-    #[arg(long, value_name = "DIR", requires = "radius")]
+    #[arg(long, value_name = "DIR", requires = "ball")]
     pub debug_geometry: Option<PathBuf>,
 }
 
 impl Rolling {
     /// The same for the library; `diagonal` is what lengths may be a share of.
-    pub fn with_radius(&self, radius: Radius, diagonal: f64) -> Result<blend::Params, Failure> {
+    pub fn with_radius(&self, sides: [f64; 2], diagonal: f64) -> Result<blend::Params, Failure> {
         if self.multiresolution && !matches!(self.surface, Surface::Keep) {
             return Err(Failure::usage(
                 "--multiresolution needs --surface keep: details are put back on the same triangles",
@@ -65,7 +67,7 @@ impl Rolling {
         }
         let keep = blend::keep::Params { levels: if self.multiresolution { LEVELS } else { 0 }, ..Default::default() };
         let at: Vec<_> = self.radius_at.iter().map(|&(p, r)| (p, r.resolve(diagonal))).collect();
-        let (radius, radii) = blend::Radii::of(radius.sides.map(|r| r.resolve(diagonal)), &at);
+        let (radius, radii) = blend::Radii::of(sides, &at);
         Ok(blend::Params {
             radii,
             profile: self.profile.as_ref().map_or(Ok(Profile::Arc), |p| p.curve.profile())?,
@@ -76,9 +78,9 @@ impl Rolling {
                 .collect::<Result<_, Failure>>()?,
             reach: self.profile.as_ref().and_then(|p| p.reach),
             overlap: match self.overlap {
+                Overlap::Full => blend::Overlap::Full,
                 Overlap::Shrink => blend::Overlap::Shrink,
                 Overlap::Error => blend::Overlap::Error,
-                Overlap::Trim => blend::Overlap::Trim,
             },
             solver: match self.spine {
                 Spine::Contact => Solver::Contact,
@@ -95,6 +97,12 @@ impl Rolling {
             sketch: if self.debug_geometry.is_some() { Sketch::new() } else { Sketch::default() },
             ..blend::Params::new(radius)
         })
+    }
+
+    /// Makes the section a straight chord, where none was given. Returns false where another one was.
+    pub fn make_chamfer(&mut self) -> bool {
+        let chamfer = Section { curve: Curve::Known(Profile::Chamfer), reach: None };
+        *self.profile.get_or_insert(chamfer.clone()) == chamfer
     }
 
     /// Whether the section is the prolonged sides, as they are.
@@ -151,13 +159,13 @@ impl Curve {
 }
 
 /// What to do where the ball does not fit.
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy)]
 pub enum Overlap {
-    /// Use a smaller ball there, fading into the full one; warnings and the report say where and how small
+    /// The envelope of the full ball.
+    Full,
+    /// A smaller ball there.
     Shrink,
-    /// Trim the full ball's sweep by itself there: the outside of all places the ball can take, made as a field
-    Trim,
-    /// Stop, naming the place and a radius that works
+    /// Stop.
     Error,
 }
 
@@ -217,6 +225,16 @@ fn surface(text: &str) -> Result<Surface, String> {
         "keep" => Ok(Surface::Keep),
         "field" => Ok(Surface::Field),
         _ => Err("a surface is auto, stitch, field or keep".into()),
+    }
+}
+
+fn overlap(text: &str) -> Result<Overlap, String> {
+    match text {
+        "full" => Ok(Overlap::Full),
+        "shrink" => Ok(Overlap::Shrink),
+        "error" => Ok(Overlap::Error),
+        "trim" => Err("`full`, the default, stands for the former `trim`".into()),
+        _ => Err("an overlap is full, shrink or error".into()),
     }
 }
 

@@ -7,7 +7,7 @@ use crate::progress::Progress;
 use fusion::mesh_core::{Bounds, Origins, Watch, bounds};
 use fusion::{Counts, Report, Stage};
 use mesh_io::{Format, Model};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -17,21 +17,49 @@ use std::time::{Duration, Instant};
 pub struct Session {
     common: Common,
     progress: Progress,
+    /// The verb.
+    name: &'static str,
     /// Time spent on reading so far.
     reading: Cell<Duration>,
+    /// What was read.
+    inputs: RefCell<Vec<Counts>>,
 }
 
 impl Session {
     /// Starts the clock of the progress bar and listens to Ctrl-C.
-    pub fn start(common: Common) -> Result<Self, Failure> {
+    pub fn start(common: Common, name: &'static str) -> Result<Self, Failure> {
         if let Some(report) = &common.report {
             if is_stream(report) {
                 return Err(Failure::usage("--report needs a file; standard output is for results"));
             }
             output::check_writable(report)?;
         }
-        let progress = Progress::start(!common.no_progress && !common.quiet);
-        Ok(Self { common, progress, reading: Cell::default() })
+        let report = common.report.clone();
+        let give_up = move |failure: &Failure| write_failed(report.as_deref(), failure, name, vec![]);
+        let progress = Progress::start(!common.no_progress && !common.quiet, common.time_limit, give_up);
+        Ok(Self { common, progress, name, reading: Cell::default(), inputs: RefCell::default() })
+    }
+
+    /// Ends the job: a failure is written to the report, and one for lack of time is told as such.
+    pub fn close(&self, result: Result<(), Failure>) -> Result<(), Failure> {
+        let failure = match (result, self.progress.late()) {
+            (Ok(()), _) => return Ok(()),
+            (Err(failure), Some(after)) if failure.is_cancelled() => Failure::late(after),
+            (Err(failure), _) => failure,
+        };
+        write_failed(self.common.report.as_deref(), &failure, self.name, self.inputs.take());
+        Err(failure)
+    }
+
+    /// Any warning is a failure where the user said so.
+    fn check_strict(&self, report: &Report) -> Result<(), Failure> {
+        if !self.common.strict || report.warnings.is_empty() {
+            return Ok(());
+        }
+        for warning in told(&report.warnings) {
+            self.warn(&warning);
+        }
+        Err(Failure::strict(report))
     }
 
     /// What long loops report to.
@@ -76,6 +104,7 @@ impl Session {
             for note in &model.notes {
                 self.note(&format!("{}: {note}", path.display()));
             }
+            self.inputs.borrow_mut().push(Counts::of(path.display().to_string(), &model.mesh));
             models.push(model);
         }
         self.reading.set(self.reading.get() + start.elapsed());
@@ -103,6 +132,7 @@ impl Session {
         report: &Report,
     ) -> Result<(), Failure> {
         self.watch().step("write", 0.0).map_err(|_| Failure::cancelled())?;
+        self.check_strict(report)?;
         let report = &self.with_reading(report);
         let mut outputs = Outputs::default();
         for (path, bytes) in files {
@@ -126,6 +156,7 @@ impl Session {
     /// Writes files other than meshes, and the report, all or none.
     pub fn write_files(&self, files: Vec<(PathBuf, Vec<u8>)>, report: &Report) -> Result<(), Failure> {
         self.watch().step("write", 0.0).map_err(|_| Failure::cancelled())?;
+        self.check_strict(report)?;
         let report = &self.with_reading(report);
         let mut outputs = Outputs::default();
         for (path, bytes) in files {
@@ -155,9 +186,22 @@ impl Session {
         for warning in told(&report.warnings) {
             self.warn(&warning);
         }
+        for note in &report.notes {
+            self.note(note);
+        }
         for stage in &report.stages {
             self.note(&format!("{:<24} {:>10.3} ms", stage.name, stage.milliseconds));
         }
+    }
+}
+
+/// Writes the report of a failed job, if it can be written: the failure itself matters more. Where another file could not be
+/// written, none is.
+fn write_failed(path: Option<&Path>, failure: &Failure, name: &str, inputs: Vec<Counts>) {
+    if let Some((path, report)) = path.zip(failure.to_report(name, inputs)) {
+        let mut outputs = Outputs::default();
+        outputs.add(path, report.to_json().into_bytes());
+        let _ = outputs.commit_after(|| Ok(()));
     }
 }
 

@@ -1,6 +1,6 @@
 //! Why a pipeline gives no result.
 
-use crate::{Invalid, blend, compose, cut, recipe, sharpen};
+use crate::{Invalid, blend, choice, compose, cut, recipe, sharpen};
 use glam::DVec3;
 use mesh_core::{Cancelled, NotManifold};
 use tri_intersect::EmbedError;
@@ -36,6 +36,9 @@ pub enum Error {
     /// No feature curve can be blended.
     #[error("{0}")]
     NoCurve(String, Option<DVec3>),
+    /// No curve can be chosen.
+    #[error(transparent)]
+    Choice(#[from] choice::Refusal),
     /// A seam could not be blended.
     #[error(transparent)]
     Blend(#[from] blend::Error),
@@ -113,6 +116,7 @@ impl Error {
             Self::Invalid(invalid) => invalid.at,
             Self::Compose(error) => error.place(),
             Self::NoCurve(_, at) => *at,
+            Self::Choice(refusal) => refusal.place(),
             Self::Remesh(
                 remesh::Error::NotFinite { place, .. }
                 | remesh::Error::Singular { at: place }

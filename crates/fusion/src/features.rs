@@ -1,5 +1,6 @@
 //! Feature curves: chains of edges across which the surface turns sharply.
 
+use crate::choice::nearest;
 use glam::DVec3;
 use mesh_core::{Adjacency, Faces, HalfedgeId, Positions, VertexId, dihedral_angle};
 use rayon::prelude::*;
@@ -78,15 +79,8 @@ pub fn nearest_curve<M: Adjacency + Positions>(
     curves: &[FeatureCurve],
     point: DVec3,
 ) -> Option<(usize, f64)> {
-    let distance = |h: HalfedgeId| {
-        let [a, b] = mesh.ends(h);
-        let t = (point - a).dot(b - a) / (b - a).length_squared();
-        // A zero-length edge gives NaN; its start serves.
-        let t = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) };
-        point.distance(a + t * (b - a))
-    };
-    let nearest = |c: &FeatureCurve| c.halfedges.iter().map(|&h| distance(h)).fold(f64::INFINITY, f64::min);
-    curves.iter().map(nearest).enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
+    let found = nearest(mesh, curves.iter().map(|c| &c.halfedges[..]), point)?;
+    Some((found.0, found.2))
 }
 
 /// The edges that are features, both halfedges marked, and how many there are at each vertex.

@@ -27,23 +27,28 @@
 //! | `repair.rs` | welding, orientation, taking apart |
 //! | `info.rs` | counts, measures and defects of one mesh |
 //! | `features.rs` | feature curves by dihedral angle |
+//! | `choice.rs` | which curves are blended
 //! | `picks.rs` | curves through picked points |
 //! | `attributes.rs`, `spread.rs` | attributes carried from inputs to the result, colours blended over new surfaces |
 //! | `profile_file.rs` | cross-sections read from files |
 //! | `palette.rs` | which colour shows what a face comes from |
+//! | `diagnostic.rs`, `metrics.rs` | what a job has to tell; what a blend did
 //! | `report.rs`, `origins_json.rs` | the account of a job, as files |
 
 mod attributes;
 pub mod blend;
+pub mod choice;
 pub mod cluster;
 pub mod compose;
 pub mod cut;
 pub mod detail;
+mod diagnostic;
 mod error;
 mod extent;
 pub mod features;
 mod info;
 pub mod join;
+mod metrics;
 mod origins_json;
 mod outcome;
 mod palette;
@@ -60,13 +65,15 @@ mod spread;
 mod validity;
 
 pub use attributes::carry;
+pub use choice::Choice;
 pub use cut::cut;
 pub use detail_transfer;
+pub use diagnostic::{Code, Diagnostic, Severity};
 pub use error::Error;
 pub use info::{Defect, Info, Loop};
 pub use join::join;
 pub use mesh_core;
-pub use origins_json::origins_to_json;
+pub use origins_json::{origins_to_json, parts_of_faces};
 pub use outcome::Outcome;
 pub use palette::palette_index;
 pub use picks::{Picked, picked_from_text};
@@ -77,7 +84,7 @@ pub use region::Region;
 pub use remeshing::remesh;
 pub use render;
 pub use repair::{Repair, repair};
-pub use report::{Counts, Quality, Report, Stage, Validity};
+pub use report::{Counts, CurveReport, Quality, Report, Stage, Validity};
 pub use round::round;
 pub use sharpen::sharpen;
 pub use spine::{OffsetParams, Solver};

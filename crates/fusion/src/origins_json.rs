@@ -24,6 +24,23 @@ pub fn origins_to_json(origins: &Origins) -> String {
     text
 }
 
+/// The part that each face comes from, as [`origins_to_json`] wrote it; `None` for faces that no part had.
+///
+/// # Errors
+/// A sentence with line and column.
+pub fn parts_of_faces(text: &str) -> Result<Vec<Option<u32>>, String> {
+    #[derive(serde::Deserialize)]
+    struct File {
+        faces: Vec<Vec<serde_json::Value>>,
+    }
+    let file: File = serde_json::from_str(text).map_err(|e| format!("no origins can be read: {e}"))?;
+    let part = |entry: Vec<serde_json::Value>| {
+        let known = matches!(entry.first().and_then(|k| k.as_str()), Some("input" | "piece"));
+        entry.get(1).filter(|_| known).and_then(serde_json::Value::as_u64).and_then(|p| u32::try_from(p).ok())
+    };
+    Ok(file.faces.into_iter().map(part).collect())
+}
+
 fn list<T>(text: &mut String, items: &[T], mut entry: impl FnMut(&mut String, &T) -> std::fmt::Result) {
     for (i, item) in items.iter().enumerate() {
         text.push_str(if i == 0 { "\n" } else { ",\n" });
@@ -57,6 +74,9 @@ mod tests {
         assert_eq!(json["vertices"][2], serde_json::json!(["face", 0, 2, 0.5, 0.25, 0.25]));
         assert_eq!(json["vertices"][3], serde_json::json!(["new", "blend"]));
         assert_eq!(json["faces"], serde_json::json!([["piece", 1, 4]]));
+        assert_eq!(parts_of_faces(&origins_to_json(&origins)), Ok(vec![Some(1)]));
+        assert_eq!(parts_of_faces("{\"faces\": [[\"new\", \"blend\"]]}"), Ok(vec![None]));
+        assert!(parts_of_faces("[]").is_err_and(|e| e.contains("line 1")));
         assert!(serde_json::from_str::<serde_json::Value>(&origins_to_json(&Origins::default())).is_ok());
     }
 }

@@ -1,6 +1,7 @@
 //! What every pipeline ends with: validation, description, attributes.
 
-use crate::blend::{self, Blended};
+use crate::blend;
+use crate::diagnostic::Diagnostic;
 use crate::validity::as_written;
 use crate::{Error, Invalid, Report, carry};
 use mesh_core::{Connected, Origins, TriMesh, Watch};
@@ -81,9 +82,7 @@ pub(crate) fn surviving(
         let (Some(blend), Err(Error::Invalid(Invalid { format: Some(_), .. }))) = (blend, &result) else { break };
         let coarser = blend::Params { snap, ..blend.clone() };
         result = job(Some(&coarser)).map(|mut outcome| {
-            outcome.report.warnings.push(format!(
-                "the linkages were moved by up to {snap} of the radius onto edges and vertices, to survive 32-bit coordinates"
-            ));
+            outcome.report.tell(Diagnostic::moved_for_rounding(snap));
             outcome
         });
     }
@@ -92,91 +91,3 @@ pub(crate) fn surviving(
 
 /// Shares of the radius by which linkages may be moved when the first attempt does not survive rounding.
 const SNAPS: [f64; 2] = [5e-3, 2e-2];
-
-/// Notes in the report what a blend did.
-pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Report) {
-    if blended.strips > 0 {
-        let worst = report.residuals.entry("contact".into()).or_default();
-        *worst = worst.max(blended.residual);
-    }
-    report.figures.insert("radius".into(), params.radius);
-    *report.figures.entry("strips".into()).or_default() += blended.strips as f64;
-    *report.figures.entry("fields".into()).or_default() += blended.fields as f64;
-    *report.figures.entry("bridged".into()).or_default() += blended.bridged as f64;
-    *report.figures.entry("corners".into()).or_default() += blended.corners as f64;
-    let smallest = blended.shrunk.iter().map(|s| s.1).fold(params.radius, f64::min);
-    for (name, value) in [("full_share", blended.full_share), ("smallest_radius", smallest)] {
-        let figure = report.figures.entry(name.into()).or_insert(value);
-        *figure = figure.min(value);
-    }
-    *report.figures.entry("shrunk_places".into()).or_default() += blended.shrunk.len() as f64;
-    *report.figures.entry("run_outs".into()).or_default() += blended.run_outs.len() as f64;
-    if let blend::Surface::Keep(how) = &params.surface
-        && how.levels > 0
-    {
-        report.figures.insert("levels".into(), blended.levels as f64);
-        report.notes.push(match blended.levels {
-            0 => "no coarser level served, so the blend was made on the mesh itself".into(),
-            levels => format!(
-                "the blend was made on level {levels} of a decimation hierarchy: vertices beside it that came back with their details moved with it"
-            ),
-        });
-    }
-    for at in &blended.run_outs {
-        report.notes.push(format!("the blend runs out in a point at {at}, where no surface ends it"));
-    }
-    *report.figures.entry("skipped_curves".into()).or_default() += blended.skipped.len() as f64;
-    for (at, what) in &blended.skipped {
-        report.warnings.push(format!("a curve near {at} stays sharp: {what}"));
-    }
-    for (at, what) in &blended.fallbacks {
-        report.warnings.push(format!("the blend near {at} is made as a field: {what}"));
-    }
-    // The worst first: of many, the program shows these alone.
-    let mut shrunk = blended.shrunk.clone();
-    shrunk.sort_by(|a, b| a.1.total_cmp(&b.1));
-    for (at, radius) in shrunk {
-        report.warnings.push(format!(
-            "a ball of radius {} does not fit near {at}: one of radius {radius} is used there, fading into the full one",
-            params.radius
-        ));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::DVec3;
-    use mesh_core::FaceId;
-
-    /// Two seams blended in turn: the report holds the worst of both, and a sentence for every place.
-    #[test]
-    fn blends_add_up_in_the_report() {
-        let blended = |full_share, shrunk: &[(DVec3, f64)]| Blended {
-            mesh: TriMesh::default(),
-            origins: Origins::default(),
-            first_blend_face: FaceId(0),
-            strips: 1,
-            fields: 1,
-            corners: 0,
-            residual: 1e-12,
-            bridged: 2,
-            shrunk: shrunk.to_vec(),
-            fallbacks: vec![],
-            skipped: vec![],
-            run_outs: vec![DVec3::ZERO],
-            levels: 0,
-            full_share,
-        };
-        let (params, mut report) = (blend::Params::new(0.5), Report::default());
-        account(&blended(1.0, &[]), &params, &mut report);
-        let figures = |report: &Report| ["full_share", "smallest_radius", "shrunk_places"].map(|f| report.figures[f]);
-        assert_eq!((figures(&report), report.warnings.len()), ([1.0, 0.5, 0.0], 0));
-        account(&blended(0.75, &[(DVec3::X, 0.25), (DVec3::Y, 0.35)]), &params, &mut report);
-        account(&blended(0.9, &[(DVec3::Z, 0.4)]), &params, &mut report);
-        assert_eq!((figures(&report), report.figures["strips"]), ([0.75, 0.25, 3.0], 3.0));
-        assert_eq!((report.figures["run_outs"], report.notes.len()), (3.0, 3));
-        let warnings = report.warnings.join("\n");
-        assert!(["[1, 0, 0]: one of radius 0.25", "0.35", "0.4"].iter().all(|w| warnings.contains(w)), "{warnings}");
-    }
-}

@@ -1,5 +1,8 @@
 //! The machine-readable account of one job: what came in, what went out, what changed, how long it took.
 
+use crate::blend::Method;
+use crate::choice::Source;
+use crate::diagnostic::{Diagnostic, Severity};
 use mesh_core::{FaceOrigin, Faces, Origins, TriMesh, VertexOrigin};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -28,6 +31,15 @@ pub struct Report {
     pub quality: Quality,
     /// Other figures by name, such as `seams`, `radius` in model units, or `volume`.
     pub figures: BTreeMap<String, f64>,
+    /// Every curve that was chosen to be blended.
+    #[serde(default)]
+    pub curves: Vec<CurveReport>,
+    /// All that is told, as data. Every warning and note that has a place or a number is here as well.
+    #[serde(default)]
+    pub diagnostics: Vec<Diagnostic>,
+    /// The exit code of the program; 0 where there is a result.
+    #[serde(default)]
+    pub exit_code: u8,
     /// What the user should know although the job succeeded, as sentences.
     pub warnings: Vec<String>,
     /// Choices that were made and why, as sentences.
@@ -66,6 +78,31 @@ pub struct Validity {
     pub self_intersections: Option<usize>,
 }
 
+/// One curve of a blend.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub struct CurveReport {
+    /// Its number: of a feature curve in the list at the same angle, else in the order of its file or of the seams.
+    pub id: usize,
+    /// What it was named by.
+    pub source: Source,
+    /// In model units.
+    pub length: f64,
+    /// What it was blended by.
+    pub method: Method,
+    /// The smallest radius used along it, in model units; 0 where it is left sharp.
+    pub radius: f64,
+    /// Share of its length that is blended at all.
+    pub blended_share: f64,
+    /// Share of its length along which the blend lies on balls of the radius asked for, within 5%; `None` where that cannot be
+    /// told: other cross-sections than an arc, radii that vary along a curve.
+    pub full_share: Option<f64>,
+    /// The ball error of its blend that 50, 90 and 99% of the area keep, as shares of the radius; `None` as above, or where
+    /// the blend has no vertex of its own.
+    pub ball_error: Option<[f64; 3]>,
+    /// Where and why it is left sharp.
+    pub left_sharp: Option<(String, [f64; 3])>,
+}
+
 /// Angles of triangles, in degrees.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, PartialEq)]
 pub struct Quality {
@@ -99,6 +136,9 @@ impl Default for Report {
             residuals: BTreeMap::new(),
             quality: Quality::default(),
             figures: BTreeMap::new(),
+            curves: vec![],
+            diagnostics: vec![],
+            exit_code: 0,
             warnings: vec![],
             notes: vec![],
             stages: vec![],
@@ -110,6 +150,16 @@ impl Report {
     /// An empty report of `command` on `inputs`.
     pub fn new(command: impl Into<String>, inputs: Vec<Counts>) -> Self {
         Self { command: command.into(), inputs, ..Self::default() }
+    }
+
+    /// Adds a diagnostic, and its sentence to the warnings or notes.
+    pub fn tell(&mut self, diagnostic: Diagnostic) {
+        match diagnostic.severity {
+            Severity::Note => self.notes.push(diagnostic.message.clone()),
+            Severity::Warning => self.warnings.push(diagnostic.message.clone()),
+            Severity::Error => {}
+        }
+        self.diagnostics.push(diagnostic);
     }
 
     /// Runs `stage` and notes its time under `name`, whether or not it succeeds.

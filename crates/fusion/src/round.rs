@@ -1,9 +1,10 @@
 //! Rounds the feature curves of one mesh.
 
-use crate::blend::{self, Limit};
-use crate::features::{self, Convexity, FeatureCurve, feature_curves, nearest_curve};
-use crate::outcome::{Inputs, Outcome, Promise, account, finish_as, surviving};
-use crate::picks::{self, Picked};
+use crate::blend::{self, Limit, ListedRadius};
+use crate::choice::{Choice, Chosen, choose, point_along};
+use crate::features::{self, FeatureCurve};
+use crate::metrics::{Part, record};
+use crate::outcome::{Inputs, Outcome, Promise, finish_as, surviving};
 use crate::{Counts, Error, Report, extent};
 use glam::DVec3;
 use mesh_core::{Adjacency, Connected, Faces, HalfedgeId, TriMesh, VertexId, Watch, boundary_loops};
@@ -17,10 +18,8 @@ use std::collections::BTreeMap;
 pub struct Params {
     /// What a feature curve is.
     pub features: features::Params,
-    /// Points in model units, each naming the feature curve nearest to it.
-    pub near: Vec<DVec3>,
-    /// Curves through picked points, beside those near places; feature curves count only where neither is given.
-    pub picked: Vec<Picked>,
+    /// Which curves are blended.
+    pub choice: Choice,
     /// The ball.
     pub blend: blend::Params,
     /// The format the result is meant for, whose rounding it must survive.
@@ -44,13 +43,14 @@ pub fn round(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, Er
 pub fn max_radius(part: &Model, params: &Params, watch: &Watch) -> Result<Limit, Error> {
     extent::check(std::slice::from_ref(part))?;
     let mesh = Connected::new(part.mesh.clone()).map_err(|source| Error::NotManifold { part: 0, source })?;
-    let curves = choose(&mesh, params)?;
+    let (chosen, _) = choose(&mesh, &params.features, &params.choice)?;
+    let (curves, _) = joined(&mesh, &chosen);
     Ok(blend::max_radius(&mesh, &curves, &params.blend, watch)?)
 }
 
-/// Roughly the same for each of `curves` alone, without a look at smaller radii; `None` where a 256th of the curve's box is too
-/// large already, and for curves of more
-/// than 40 edges or after 400 edges in all: a list is to be made in seconds. Ask for those alone.
+/// The same for each of `curves` alone, found in little time: at most three blends are tried for a curve, and none for long curves or
+/// once the list has cost enough, where [`ListedRadius::tried`] says that the radius is only an upper bound. `None` where no radius
+/// tried works.
 ///
 /// # Errors
 /// [`Error::Extent`], [`Error::Cancelled`].
@@ -58,83 +58,80 @@ pub fn max_radius_of_each(
     mesh: &Connected<TriMesh>,
     curves: &[FeatureCurve],
     watch: &Watch,
-) -> Result<Vec<Option<Limit>>, Error> {
+) -> Result<Vec<Option<ListedRadius>>, Error> {
     extent::check_box(mesh_core::bounds(mesh))?;
-    let mut edges = 0;
+    let mut cost = 0;
     let due = |curve: &FeatureCurve| {
-        let own = curve.halfedges.len();
-        let due = own <= LONGEST && edges + own <= ALL;
-        edges += if due { own } else { 0 };
+        // A blend costs by its edges, and by a pass over the mesh.
+        let own = curve.halfedges.len() + mesh.face_count() / FACES;
+        let due = curve.halfedges.len() <= LONGEST && cost + own <= ALL;
+        cost += if due { own } else { 0 };
         due
     };
     let due: Vec<bool> = curves.iter().map(due).collect();
-    let limit = |(curve, due): (&FeatureCurve, &bool)| {
+    let limit = |(curve, &due): (&FeatureCurve, &bool)| {
         watch.step("radii", 0.0)?;
-        if !due {
-            return Ok(None);
-        }
         let chain = BlendCurve { halfedges: curve.halfedges.clone(), closed: curve.closed };
-        match blend::rough_max_radius(HALVINGS, mesh, &[chain], &blend::Params::new(1.0), watch) {
-            Ok(limit) => Ok(Some(limit)),
-            Err(blend::Error::Cancelled(c)) => Err(c.into()),
-            Err(_) => Ok(None),
-        }
+        Ok(blend::listed_radius(mesh, &chain, due, watch)?)
     };
     curves.par_iter().zip(&due).map(limit).collect()
 }
 
-/// Most edges of a curve in a list of radii, and of all its curves.
+/// Most edges of a curve for which blends are tried in a list, and of all its curves.
 const LONGEST: usize = 40;
 const ALL: usize = 400;
-/// How often the first radius is halved for a list.
-const HALVINGS: u32 = 2;
+/// So many faces of a mesh cost as much as one edge of a curve.
+const FACES: usize = 2000;
 
 fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch) -> Result<Outcome, Error> {
     let mut report = Report::new("blend", vec![Counts::of("", &part.mesh)]);
     let mesh = report
         .time("connect", || Connected::new(part.mesh.clone()))
         .map_err(|source| Error::NotManifold { part: 0, source })?;
-    let curves = report.time("features", || choose(&mesh, params))?;
-    report.figures.insert("curves".into(), curves.len() as f64);
+    let (chosen, told) = report.time("features", || choose(&mesh, &params.features, &params.choice))?;
+    for diagnostic in told {
+        report.tell(diagnostic);
+    }
+    let (curves, wholes) = joined(&mesh, &chosen);
+    let how = &with_own_radii(&mesh, &chosen, how);
+    let parts = chosen.into_iter().zip(wholes).map(|(chosen, whole)| Part {
+        source: chosen.source,
+        id: chosen.id,
+        radius: chosen.radius.unwrap_or(how.radius * how.radii.rest),
+        halfedges: chosen.curve.halfedges,
+        whole,
+    });
+    let parts: Vec<Part> = parts.collect();
     let blended = report.time("blend", || blend::blend(&mesh, &curves, how, watch))?;
-    account(&blended, how, &mut report);
+    record(&mesh, &parts, &blended, how, &mut report);
     let promise = Promise::Openings(boundary_loops(&mesh).len());
     let inputs = Inputs { models: std::slice::from_ref(part), connected: &[&mesh] };
     finish_as(promise, inputs, blended.mesh, blended.origins, params.format, report, watch)
 }
 
-fn choose(mesh: &Connected<TriMesh>, params: &Params) -> Result<Vec<BlendCurve>, Error> {
-    let picked = picks::trace(mesh, &params.picked)?;
-    let all = feature_curves(mesh, &params.features);
-    if all.is_empty() && picked.is_empty() {
-        let angle = params.features.angle;
-        return Err(Error::NoCurve(format!("no edge turns by {angle} degrees or more; lower --angle"), None));
+/// The radii that curves have of their own, in the ball's parameters.
+fn with_own_radii(mesh: &Connected<TriMesh>, chosen: &[Chosen], how: &blend::Params) -> blend::Params {
+    let own: Vec<(DVec3, f64)> =
+        chosen.iter().filter_map(|c| Some((point_along(mesh, &c.curve.halfedges)?, c.radius?))).collect();
+    let Some(&(_, first)) = own.first() else { return how.clone() };
+    let mut how = how.clone();
+    if own.len() == chosen.len() && own.iter().all(|o| o.1 == first) && how.radii.keys.is_empty() {
+        // One radius for all is plain again, whatever the others would have had.
+        (how.radius, how.radii.rest) = (first, 1.0);
+    } else {
+        (how.radius, how.radii) = how.radii.with_curves(how.radius, &own);
     }
-    let mut chosen: Vec<usize> = params.near.iter().filter_map(|&p| Some(nearest_curve(mesh, &all, p)?.0)).collect();
-    if params.near.is_empty() && picked.is_empty() {
-        chosen = (0..all.len()).collect();
-    }
-    chosen.sort_unstable();
-    chosen.dedup();
-    let curve =
-        |id: usize| (all[id].convexity, BlendCurve { halfedges: all[id].halfedges.clone(), closed: all[id].closed });
-    let mut curves: Vec<_> = chosen.into_iter().map(curve).collect();
-    for curve in picked {
-        let convexity = match curve.convexity(mesh).map_err(blend::Error::from)? {
-            spine::Convexity::Convex => Convexity::Convex,
-            spine::Convexity::Concave => Convexity::Concave,
-        };
-        curves.push((convexity, curve));
-    }
-    Ok(joined(mesh, curves))
+    how
 }
 
-/// Curves of one convexity joined where just two of those chosen meet: nothing else sets them apart there.
-fn joined(mesh: &Connected<TriMesh>, mut curves: Vec<(Convexity, BlendCurve)>) -> Vec<BlendCurve> {
+/// The chosen curves, those of one convexity and radius joined where just two meet, since nothing else sets them apart
+/// there; and in which of them each chosen one is.
+fn joined(mesh: &Connected<TriMesh>, chosen: &[Chosen]) -> (Vec<BlendCurve>, Vec<usize>) {
+    let mut curves: Vec<BlendCurve> = chosen.iter().map(|c| c.curve.clone()).collect();
     let mut at: BTreeMap<VertexId, Vec<usize>> = BTreeMap::new();
     let ends =
         |c: &BlendCurve| c.halfedges.first().zip(c.halfedges.last()).map(|(&f, &l)| [mesh.tail(f), mesh.head(l)]);
-    for (i, (_, curve)) in curves.iter().enumerate().filter(|(_, c)| !c.1.closed) {
+    for (i, curve) in curves.iter().enumerate().filter(|(_, c)| !c.closed) {
         ends(curve).into_iter().flatten().for_each(|v| at.entry(v).or_default().push(i));
     }
     let mut taken_by: Vec<usize> = (0..curves.len()).collect();
@@ -144,20 +141,21 @@ fn joined(mesh: &Connected<TriMesh>, mut curves: Vec<(Convexity, BlendCurve)>) -
         }
         i
     };
+    let alike = |i: usize, j: usize| (chosen[i].convexity, chosen[i].radius) == (chosen[j].convexity, chosen[j].radius);
     for (vertex, meeting) in at {
         let &[i, j] = &meeting[..] else { continue };
         // Earlier joins may have taken a curve into another.
         let (i, j) = (follow(&taken_by, i), follow(&taken_by, j));
-        if curves[i].0 != curves[j].0 {
+        if !alike(i, j) {
             continue;
         }
         if i == j {
-            curves[i].1.closed = ends(&curves[i].1).is_some_and(|e| e[0] == e[1]);
+            curves[i].closed = ends(&curves[i]).is_some_and(|e| e[0] == e[1]);
             continue;
         }
-        let mut first = curves[i].1.halfedges.clone();
-        let mut second = std::mem::take(&mut curves[j].1.halfedges);
-        if ends(&curves[i].1).is_some_and(|e| e[1] != vertex) {
+        let mut first = curves[i].halfedges.clone();
+        let mut second = std::mem::take(&mut curves[j].halfedges);
+        if ends(&curves[i]).is_some_and(|e| e[1] != vertex) {
             first = reversed(mesh, &first);
         }
         if second.first().is_some_and(|&h| mesh.tail(h) != vertex) {
@@ -165,9 +163,18 @@ fn joined(mesh: &Connected<TriMesh>, mut curves: Vec<(Convexity, BlendCurve)>) -
         }
         first.append(&mut second);
         taken_by[j] = i;
-        curves[i].1.halfedges = first;
+        curves[i].halfedges = first;
     }
-    curves.into_iter().map(|c| c.1).filter(|c| !c.halfedges.is_empty()).collect()
+    // Those left keep their order.
+    let mut number = vec![0; curves.len()];
+    let mut count = 0;
+    for (i, curve) in curves.iter().enumerate() {
+        number[i] = count;
+        count += usize::from(!curve.halfedges.is_empty());
+    }
+    let wholes = (0..curves.len()).map(|i| number[follow(&taken_by, i)]).collect();
+    curves.retain(|c| !c.halfedges.is_empty());
+    (curves, wholes)
 }
 
 fn reversed(mesh: &Connected<TriMesh>, chain: &[HalfedgeId]) -> Vec<HalfedgeId> {

@@ -95,7 +95,12 @@ fn run(parts: &[TriMesh], operation: Operation, radius: Option<f64>) -> Result<f
     let models: Vec<_> = parts.iter().cloned().map(Model::from).collect();
     let watch = Watch::default();
     let booleans = |operation: fusion::Operation| {
-        let params = fusion::join::Params { operation, blend: radius.map(blend::Params::new), format: Format::Ply };
+        let params = fusion::join::Params {
+            operation,
+            blend: radius.map(blend::Params::new),
+            seams: fusion::join::SeamChoice::default(),
+            format: Format::Ply,
+        };
         fusion::join(&models, &params, &watch)
     };
     match operation {

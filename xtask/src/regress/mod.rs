@@ -2,6 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `blends.rs`, `cad.rs`, `parts.rs` | all edges of CAD meshes and parts |
 //! | `case.rs` | cases as files |
 //! | `golden.rs` | approved records |
 //! | `cluster.rs` | polyhedra rounded by clusters |
@@ -15,6 +16,8 @@
 //! | `reference.rs` | results checked by another library |
 //! | `threads.rs` | results of one thread and of two compared |
 
+mod blends;
+mod cad;
 mod case;
 pub mod cluster;
 mod compositions;
@@ -24,6 +27,7 @@ mod lewiner;
 mod measures;
 mod nasty;
 mod pairs;
+mod parts;
 mod pose;
 mod recipes;
 mod reference;
@@ -46,6 +50,12 @@ pub struct Options {
     /// Also run the pairs of fixtures/pairs.toml, random compositions and the broken files found in this folder
     #[arg(long, value_name = "DIR")]
     models: Option<PathBuf>,
+    /// The folder with CAD parts and OCCT's fillets of them [default: cad-parts beside the folder of models, where there is one]
+    #[arg(long, value_name = "DIR")]
+    parts: Option<PathBuf>,
+    /// Only the CAD meshes and parts, and nothing else
+    #[arg(long, conflicts_with_all = ["bless", "reference", "broken"])]
+    cad: bool,
     /// Only a few of the pairs and compositions, at one radius, few verbs on each broken file, and no tables
     #[arg(long, requires = "models")]
     quick: bool,
@@ -62,6 +72,9 @@ pub fn run(options: &Options) -> Result<(), Fault> {
     if let Some(models) = options.models.as_ref().filter(|_| options.broken) {
         return verdict(nasty::run(&models.join("nasty"), false)?);
     }
+    if options.cad {
+        return verdict(cad_meshes(options)?);
+    }
     let mut reference = if options.reference { Some(Reference::new()?) } else { None };
     let mut threads = Threads::new()?;
     let mut faults = cluster::run(options.bless, &mut reference, &mut threads)?;
@@ -76,7 +89,21 @@ pub fn run(options: &Options) -> Result<(), Fault> {
         faults += compositions::run(models, options.quick, &mut reference)?;
         faults += pairs::run(models, options.quick, &mut reference)?;
     }
+    faults += cad_meshes(options)?;
     verdict(faults)
+}
+
+/// All edges of the CAD meshes among the models, and of the parts beside them.
+fn cad_meshes(options: &Options) -> Result<usize, Fault> {
+    let beside = options.models.as_ref().map(|m| m.join("../cad-parts")).filter(|p| p.exists());
+    let mut faults = 0;
+    if let Some(folder) = options.parts.clone().or(beside) {
+        faults += parts::run(&folder, options.quick)?;
+    }
+    if let Some(folder) = options.models.as_ref().map(|m| m.join("cad")).filter(|p| p.exists()) {
+        faults += cad::run(&folder, options.quick)?;
+    }
+    Ok(faults)
 }
 
 fn verdict(faults: usize) -> Result<(), Fault> {

@@ -28,7 +28,8 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         .map_err(|e| Failure::unwritable(format!("cannot make the folder {}: {e}", folder.display())))?;
     for piece in pieces() {
         let blend = Some(blend::Params::new(piece.radius));
-        let params = join::Params { operation: piece.operation, blend, format: Format::Ply };
+        let params =
+            join::Params { operation: piece.operation, blend, seams: join::SeamChoice::default(), format: Format::Ply };
         let mut outcome = join(&piece.parts, &params, session.watch())
             .map_err(|e| Failure::of(&e, format!("{}: {e}", piece.name)))?;
         outcome.report.command = "demo".into();

@@ -5,11 +5,11 @@ use crate::failure::Failure;
 use crate::output::{check_writable, print};
 use crate::session::{Session, counts};
 use fusion::Report;
-use fusion::blend::Limit;
+use fusion::blend::ListedRadius;
+use fusion::choice::point_within;
 use fusion::features::{Convexity, FeatureCurve, Params, feature_curves};
-use fusion::mesh_core::{Connected, Faces, Positions, TriMesh};
+use fusion::mesh_core::{Connected, Positions, TriMesh};
 use fusion::round::max_radius_of_each;
-use glam::DVec3;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -48,27 +48,27 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     }
 }
 
-fn table(mesh: &Connected<TriMesh>, curves: &[FeatureCurve], limits: &[Option<Limit>]) -> String {
-    let mut text = String::from("  id  edges        length  turn (degrees)  kind             largest radius  from\n");
+fn table(mesh: &Connected<TriMesh>, curves: &[FeatureCurve], limits: &[Option<ListedRadius>]) -> String {
+    let mut text = String::from("  id  edges        length  turn (degrees)  kind             largest radius  near\n");
     for (id, (curve, limit)) in curves.iter().zip(limits).enumerate() {
-        let radius = limit.as_ref().map_or("-".into(), |l| format!("{:.6}", l.radius));
+        let radius = limit.map_or("-".into(), |l| format!("{}{:.6}", if l.tried { "" } else { "<= " }, l.radius));
         let kind = format!("{}, {}", convexity(curve), if curve.closed { "closed" } else { "open" });
-        let start = curve.halfedges.first().map_or(DVec3::ZERO, |&h| mesh.position(mesh.tail(h)));
+        let at = point_within(mesh, curve);
         let turn = format!("{:.1} to {:.1}", curve.angles[0], curve.angles[1]);
         let _ = writeln!(
             text,
             "{id:>4} {:>6} {:>13.6} {turn:>15}  {kind:<15}  {radius:>14}  {},{},{}",
             curve.halfedges.len(),
             curve.length,
-            start.x,
-            start.y,
-            start.z
+            at.x,
+            at.y,
+            at.z
         );
     }
     text
 }
 
-fn to_json(mesh: &Connected<TriMesh>, id: usize, curve: &FeatureCurve, limit: Option<&Limit>) -> Value {
+fn to_json(mesh: &Connected<TriMesh>, id: usize, curve: &FeatureCurve, limit: Option<&ListedRadius>) -> Value {
     let vertices = curve.vertices(mesh);
     let points: Vec<_> = vertices.iter().map(|&v| mesh.position(v).to_array()).collect();
     let mut ends: Vec<[f64; 3]> = vec![];
@@ -82,9 +82,11 @@ fn to_json(mesh: &Connected<TriMesh>, id: usize, curve: &FeatureCurve, limit: Op
         "closed": curve.closed,
         "angles": curve.angles,
         "ends": ends,
+        "near": point_within(mesh, curve).to_array(),
         "max_radius": limit.map(|l| l.radius),
+        "max_radius_tried": limit.map(|l| l.tried),
         "limited_by": limit.map(|l| l.what),
-        "limited_at": limit.and_then(|l| l.at).map(|p| p.to_array()),
+        "limited_at": limit.map(|l| l.at.to_array()),
         "vertices": vertices.iter().map(|v| v.0).collect::<Vec<_>>(),
         "points": points,
     })

@@ -16,7 +16,7 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     let Some(folder) = &args.output else { return stream(&page(program)?) };
     fs::create_dir_all(folder)
         .map_err(|e| Failure::unwritable(format!("cannot make the folder {}: {e}", folder.display())))?;
-    let verbs = program.get_subcommands().filter(|v| v.get_name() != "help");
+    let verbs = program.get_subcommands().filter(|v| v.get_name() != "help" && !v.is_hide_set());
     let mut pages: Vec<_> = verbs.map(|v| (format!("fusion-cli-{}.1", v.get_name()), v.clone())).collect();
     pages.push(("fusion-cli.1".into(), program.clone()));
     let pages = pages.into_iter().map(|(name, command)| Ok((folder.join(name), page(command)?)));

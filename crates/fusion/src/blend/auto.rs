@@ -2,7 +2,9 @@
 
 use super::corner::closest_between;
 use super::trouble::Trouble;
-use super::{Blended, Error, Overlap, Params, ROUNDS, Surface, attempt, envelope, explained, field};
+use super::{
+    Blended, CurveBlend, Error, LeftSharp, Method, Overlap, Params, ROUNDS, Surface, attempt, envelope, explained, field,
+};
 use glam::DVec3;
 use mesh_core::{
     Adjacency, Bounds, Connected, FaceId, Faces, HalfedgeId, Origins, Positions, Stage, TriMesh, VertexId,
@@ -30,7 +32,7 @@ pub(crate) fn blend(
         return Err(Error::NoCurves);
     }
     let as_asked = params.surface == Surface::Field;
-    let mut so_far = SoFar::new(mesh, curves);
+    let mut so_far = SoFar::new(mesh, curves, params.radius);
     let mut handed_over = vec![as_asked; curves.len()];
     let mut refusal = None;
     while handed_over.contains(&false) {
@@ -65,7 +67,7 @@ pub(crate) fn blend(
         // Some of the curves alone may not tell two sides apart.
         handed_over.fill(true);
         let told = so_far.blended.fallbacks;
-        so_far = SoFar::new(mesh, curves);
+        so_far = SoFar::new(mesh, curves, params.radius);
         so_far.blended.fallbacks = told;
         refusal = Some(trouble);
     }
@@ -344,6 +346,7 @@ fn end_vertices(mesh: &Connected<TriMesh>, curve: &BlendCurve) -> Vec<VertexId> 
 struct SoFar<'a> {
     input: &'a Connected<TriMesh>,
     all: &'a [BlendCurve],
+    radius: f64,
     /// The present mesh; `None` while it is the input, or until [`SoFar::connect`].
     mesh: Option<Connected<TriMesh>>,
     blended: Blended,
@@ -352,9 +355,10 @@ struct SoFar<'a> {
 }
 
 impl<'a> SoFar<'a> {
-    fn new(input: &'a Connected<TriMesh>, all: &'a [BlendCurve]) -> Self {
-        let blended = Blended::new(TriMesh::default(), Origins::default(), FaceId(0));
-        Self { input, all, mesh: None, blended, length: 0.0 }
+    fn new(input: &'a Connected<TriMesh>, all: &'a [BlendCurve], radius: f64) -> Self {
+        let mut blended = Blended::new(TriMesh::default(), Origins::default(), FaceId(0));
+        blended.curves = all.iter().map(|c| CurveBlend::sharp(c.length(input), None)).collect();
+        Self { input, all, radius, mesh: None, blended, length: 0.0 }
     }
 
     /// Makes ready for more curves to be blended.
@@ -444,7 +448,10 @@ impl<'a> SoFar<'a> {
     fn leave(&mut self, chosen: impl Fn(usize) -> bool, at: DVec3, what: &'static str) {
         let own = (0..self.all.len()).filter(|&i| chosen(i));
         let length: f64 = own.clone().map(|i| self.all[i].length(self.input)).sum();
-        self.blended.skipped.extend(own.map(|_| (at, what)));
+        for i in own {
+            let why = Some((at, LeftSharp::Stage(what)));
+            self.blended.curves[i] = CurveBlend::sharp(self.blended.curves[i].length, why);
+        }
         let so_far = &mut self.blended;
         so_far.full_share *= self.length / (self.length + length).max(f64::MIN_POSITIVE);
         self.length += length;
@@ -454,6 +461,13 @@ impl<'a> SoFar<'a> {
     fn add(&mut self, made: Blended, chosen: impl Fn(usize) -> bool) {
         let own: f64 = (0..self.all.len()).filter(|&i| chosen(i)).map(|i| self.all[i].length(self.input)).sum();
         let so_far = &mut self.blended;
+        for (k, i) in (0..self.all.len()).filter(|&i| chosen(i)).enumerate() {
+            let by_field = || {
+                let least = made.shrunk.iter().map(|s| s.1).fold(self.radius, f64::min);
+                CurveBlend::made(Method::Field, least, so_far.curves[i].length, made.full_share)
+            };
+            so_far.curves[i] = made.curves.get(k).copied().unwrap_or_else(by_field);
+        }
         let before = self.mesh.take();
         so_far.origins = match &before {
             Some(before) => {

@@ -1,6 +1,7 @@
 //! The largest radius that fits.
 
-use super::{Error, Overlap, Params, ROUNDS, Trouble, attempt};
+use super::vicinity::vicinity;
+use super::{Error, Overlap, Params, ROUNDS, Surface, Trouble, attempt, width};
 use glam::DVec3;
 use mesh_core::{Bounds, Connected, HalfedgeId, Positions, TriMesh, Watch};
 use spine::BlendCurve;
@@ -65,17 +66,51 @@ pub fn max_radius(
     Ok(found)
 }
 
-/// The largest radius that fits, from a first one that is halved no more than `halvings` times, and without a look at
-/// smaller ones: for lists that are to be made in seconds.
-pub(crate) fn rough_max_radius(
-    halvings: u32,
+/// How large a ball may be along one curve of a list, found in little time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ListedRadius {
+    /// In model units.
+    pub radius: f64,
+    /// Whether a blend of this radius was made and checked; else it is what the width of the sides allows, and no more than an upper
+    /// bound.
+    pub tried: bool,
+    /// What is in the way of a larger one.
+    pub what: &'static str,
+    /// Where, in model units.
+    pub at: DVec3,
+}
+
+/// Shares of what the sides allow that are tried for a list.
+const LISTED: [f64; 3] = [0.98, 0.49, 0.24];
+
+/// The largest radius for one curve of a list: what the width of its sides allows, or if `attempts` the first share of it with which
+/// the curve alone can be blended. `None` where the sides have no end or no share works.
+pub(crate) fn listed_radius(
     mesh: &Connected<TriMesh>,
-    curves: &[BlendCurve],
-    params: &Params,
+    curve: &BlendCurve,
+    attempts: bool,
     watch: &Watch,
-) -> Result<Limit, Error> {
-    let search = Search { mesh, curves, params, watch };
-    search.bracket(START * search.diagonal(), None, halvings)
+) -> Result<Option<ListedRadius>, Error> {
+    let Some((widest, narrowest)) = width::widest_ball(mesh, curve) else { return Ok(None) };
+    let (mut what, mut at) = ("the width of its sides", narrowest);
+    if !attempts {
+        return Ok(Some(ListedRadius { radius: widest, tried: false, what, at }));
+    }
+    let curves = std::slice::from_ref(curve);
+    for radius in LISTED.map(|share| share * widest) {
+        let params = Params { overlap: Overlap::Error, surface: Surface::Stitch, ..Params::new(radius) };
+        let near = vicinity(mesh, curves, &params);
+        let (part, own) = near.as_ref().map_or((mesh, curves), |n| (&n.mesh, &n.curves[..]));
+        match attempt(part, own, &params, ROUNDS, watch) {
+            Ok(_) => return Ok(Some(ListedRadius { radius, tried: true, what, at })),
+            Err(Trouble::Cancelled(c)) => return Err(c.into()),
+            Err(Trouble::Places { what: trouble, places }) => {
+                (what, at) = (trouble, places.first().copied().unwrap_or(at));
+            }
+            Err(_) => {}
+        }
+    }
+    Ok(None)
 }
 
 /// A radius that does not fit, and why.

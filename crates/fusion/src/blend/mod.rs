@@ -5,8 +5,9 @@
 //! | `mod.rs` | the stages, and the loop that makes the ball smaller where it does not fit |
 //! | `params.rs`, `error.rs` | how curves are blended; why they cannot be |
 //! | `vicinity.rs` | the part of a large mesh that the blend is made on |
+//! | `curve_blend.rs`, `measure.rs` | what each curve was blended by; the ball error of the result
 //! | `auto.rs` | which curves are swept and which are blended as a field |
-//! | `limit.rs` | the largest radius that fits |
+//! | `limit.rs`, `width.rs` | the largest radius that fits; how wide the sides of a curve are |
 //! | `radii.rs`, `profiles.rs` | how radius and cross-section vary along a curve, and the radius between its sides |
 //! | `mends.rs` | what has been done so far to make the blend fit |
 //! | `rolling.rs` | a ball rolled along every curve |
@@ -28,6 +29,7 @@
 
 mod auto;
 mod corner;
+mod curve_blend;
 mod dwindle;
 mod ending;
 mod envelope;
@@ -37,6 +39,7 @@ mod fill;
 pub mod keep;
 mod limit;
 mod linkage;
+pub(crate) mod measure;
 mod mends;
 mod network;
 mod params;
@@ -50,13 +53,15 @@ mod stretch;
 mod strip;
 mod trouble;
 mod vicinity;
+mod width;
 
+pub use curve_blend::{CurveBlend, LeftSharp, Method};
 use ending::{Ends, Layout};
 pub use error::Error;
 use fill::fill;
 use glam::DVec3;
-pub(crate) use limit::rough_max_radius;
-pub use limit::{Limit, max_radius};
+pub(crate) use limit::listed_radius;
+pub use limit::{Limit, ListedRadius, max_radius};
 use linkage::{Opened, cut_linkages};
 use mends::Mends;
 use mesh_core::{Connected, FaceId, Faces, Origins, Positions, TriMesh, VertexId, Watch, centroid};
@@ -96,14 +101,14 @@ pub struct Blended {
     pub shrunk: Vec<(DVec3, f64)>,
     /// Where sweeping failed and a field took its place: place, and what failed there.
     pub fallbacks: Vec<(DVec3, &'static str)>,
-    /// For each curve left sharp, where no ball fits and why.
-    pub skipped: Vec<(DVec3, &'static str)>,
     /// Where a curve ends alone with no surface to stop at, so that the blend runs out in a point.
     pub run_outs: Vec<DVec3>,
     /// On which level of a decimation hierarchy the blend was made; 0 is the mesh itself.
     pub levels: usize,
     /// Share of the spine's length on which the ball has its full radius.
     pub full_share: f64,
+    /// How each of the curves was blended, in their order.
+    pub curves: Vec<CurveBlend>,
 }
 
 impl Blended {
@@ -120,10 +125,10 @@ impl Blended {
             bridged: 0,
             shrunk: vec![],
             fallbacks: vec![],
-            skipped: vec![],
             run_outs: vec![],
             levels: 0,
             full_share: 1.0,
+            curves: vec![],
         }
     }
 }
@@ -142,7 +147,10 @@ pub fn blend(
     watch: &Watch,
 ) -> Result<Blended, Error> {
     if let Surface::Keep(how) = &params.surface {
-        return keep::blend(mesh, curves, params, how, watch);
+        let mut blended = keep::blend(mesh, curves, params, how, watch)?;
+        let made = |c: &BlendCurve| CurveBlend::made(Method::Keep, params.radius, c.length(mesh), blended.full_share);
+        blended.curves = curves.iter().map(made).collect();
+        return Ok(blended);
     }
     if let Some(near) = vicinity::vicinity(mesh, curves, params) {
         match blend_whole(&near.mesh, &near.curves, params, watch) {
@@ -234,6 +242,7 @@ fn attempt(
         {
             Ok(mut blended) => {
                 mends.account_for(&rails, &mut blended);
+                blended.curves = curve_blend::swept(mesh, curves, &rails, |i| mends.field(i));
                 return Ok(blended);
             }
             Err(trouble) => trouble,

@@ -15,12 +15,14 @@ pub struct Radii {
     /// The share at the ends of open curves, half-way round from the only key of a closed one, and on curves without
     /// keys.
     pub rest: f64,
+    /// Places and the share of the whole curve nearest to each, in place of `rest`.
+    pub own: Vec<(DVec3, f64)>,
 }
 
 impl Default for Radii {
     /// The same radius everywhere.
     fn default() -> Self {
-        Self { sides: [1.0; 2], keys: Vec::new(), rest: 1.0 }
+        Self { sides: [1.0; 2], keys: Vec::new(), rest: 1.0, own: Vec::new() }
     }
 }
 
@@ -31,7 +33,17 @@ impl Radii {
         let rest = left.max(right);
         let largest = at.iter().map(|k| k.1).fold(rest, f64::max);
         let keys = at.iter().map(|&(p, r)| (p, r / largest)).collect();
-        (largest, Self { sides: [left / rest, right / rest], keys, rest: rest / largest })
+        (largest, Self { sides: [left / rest, right / rest], keys, rest: rest / largest, own: Vec::new() })
+    }
+
+    /// The same with radii in model units for whole curves, each the one nearest to a place: the largest of all radii, and
+    /// all as shares of it.
+    #[must_use]
+    pub fn with_curves(self, radius: f64, own: &[(DVec3, f64)]) -> (f64, Self) {
+        let largest = own.iter().map(|k| k.1).fold(radius, f64::max);
+        let keys = self.keys.iter().map(|&(p, share)| (p, share * radius / largest)).collect();
+        let own = own.iter().map(|&(p, r)| (p, r / largest)).collect();
+        (largest, Self { keys, own, rest: self.rest * radius / largest, ..self })
     }
 
     /// Whether there is one ball for both sides.
@@ -41,22 +53,24 @@ impl Radii {
 
     /// The smallest share anywhere.
     pub fn least(&self) -> f64 {
-        self.keys.iter().map(|k| k.1).fold(self.rest, f64::min) * self.sides[0].min(self.sides[1])
+        self.keys.iter().chain(&self.own).map(|k| k.1).fold(self.rest, f64::min) * self.sides[0].min(self.sides[1])
     }
 
     /// The field of each curve.
     pub(crate) fn fields(&self, mesh: &Connected<TriMesh>, curves: &[BlendCurve], radius: f64) -> Vec<RadiusField> {
-        let own = of_nearest(mesh, curves, self.keys.iter().map(|k| k.0));
+        let keys = of_nearest(mesh, curves, self.keys.iter().map(|k| k.0));
+        let rests = of_nearest(mesh, curves, self.own.iter().map(|k| k.0));
         let plain = RadiusField { sides: self.sides, ..RadiusField::constant(radius) };
-        let field = |(curve, own): (&BlendCurve, Vec<usize>)| {
-            let keys: Vec<_> = own.into_iter().map(|k| self.keys[k]).collect();
-            let law = if keys.is_empty() { None } else { Law::new(chain(mesh, curve), curve.closed, &keys, self.rest) };
+        let field = |((curve, keys), rest): ((&BlendCurve, Vec<usize>), Vec<usize>)| {
+            let keys: Vec<_> = keys.into_iter().map(|k| self.keys[k]).collect();
+            let rest = rest.first().map_or(self.rest, |&k| self.own[k].1);
+            let law = if keys.is_empty() { None } else { Law::new(chain(mesh, curve), curve.closed, &keys, rest) };
             match law {
                 Some(law) => RadiusField { law: Some(Arc::new(law)), ..plain.clone() },
-                None => RadiusField { base: radius * self.rest, ..plain.clone() },
+                None => RadiusField { base: radius * rest, ..plain.clone() },
             }
         };
-        curves.iter().zip(own).map(field).collect()
+        curves.iter().zip(keys).zip(rests).map(field).collect()
     }
 }
 

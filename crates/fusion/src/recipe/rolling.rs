@@ -104,8 +104,9 @@ impl Recipe {
             params.overlap = match text.get_ref().as_str() {
                 "shrink" => blend::Overlap::Shrink,
                 "error" => blend::Overlap::Error,
-                "trim" => blend::Overlap::Trim,
-                _ => return Err(self.error(text.span(), "overlap is shrink, trim or error")),
+                "full" => blend::Overlap::Full,
+                "trim" => return Err(self.error(text.span(), "overlap = \"full\" stands for the former \"trim\"")),
+                _ => return Err(self.error(text.span(), "overlap is full, shrink or error")),
             };
         }
         if let Some(text) = keys.surface {

@@ -6,7 +6,7 @@ use crate::cluster::cluster;
 use crate::cut::{self, cut};
 use crate::features;
 use crate::outcome::{Outcome, Promise, finish_as};
-use crate::{Counts, Error, Report, join, join::join as join_parts, round};
+use crate::{Choice, Counts, Error, Report, join, join::join as join_parts, round};
 use glam::DVec3;
 use mesh_core::{Bounds, Faces, Origins, Stage, TriMesh, Watch, bounds};
 use mesh_io::{Format, Model};
@@ -109,6 +109,7 @@ impl Replay<'_> {
             let params = join::Params {
                 operation: self.recipe.operation(i)?,
                 blend: self.recipe.rolling_of_boolean(i, self.diagonal())?,
+                seams: join::SeamChoice::default(),
                 format: self.format,
             };
             let at = self.step("boolean", &which, |models, watch| join_parts(models, &params, watch))?;
@@ -126,8 +127,11 @@ impl Replay<'_> {
             };
             let params = round::Params {
                 features: features::Params { angle, ..features::Params::default() },
-                picked: blend.picked.clone(),
-                near: blend.near.iter().map(|&p| DVec3::from(p)).collect(),
+                choice: Choice {
+                    picked: blend.picked.clone(),
+                    near: blend.near.iter().map(|&p| DVec3::from(p).into()).collect(),
+                    ..Choice::default()
+                },
                 blend: self.recipe.rolling_of_blend(i, self.diagonal())?,
                 format: self.format,
             };
@@ -186,6 +190,8 @@ impl Replay<'_> {
         report.residuals.extend(given.residuals);
         report.figures.extend(given.figures);
         report.notes.extend(given.notes);
+        report.curves.extend(given.curves);
+        report.diagnostics.extend(given.diagnostics);
         for mut stage in given.stages {
             stage.name = format!("{name}: {}", stage.name);
             report.stages.push(stage);

@@ -192,7 +192,7 @@ pub struct Blend {
     pub curves: Option<Spanned<PathBuf>>,
     /// `"arc"` (the default), `"g2"`, `"chamfer"`, `"sharp"`, `"hermite"` or `"conic=W"`.
     pub profile: Option<Spanned<String>>,
-    /// `"shrink"` (the default), `"trim"` or `"error"`.
+    /// `"full"` (the default), `"shrink"` or `"error"`.
     pub overlap: Option<Spanned<String>>,
     /// `"auto"` (the default), `"stitch"`, `"field"` or `"keep"`.
     pub surface: Option<Spanned<String>>,

@@ -19,7 +19,7 @@ const ROLLING: &[Key] = &[
     key("profile_at", TABLES_OF, "", "cross-sections at places, between which one changes into the next")
         .of(Holds::Tables("profile_at")),
     key("reach", "0.1 to 100", "", "distance of the section's apex from the ball's centre, in radii"),
-    key("overlap", "`shrink`, `trim`, `error`", "`shrink`", "where the ball does not fit"),
+    key("overlap", "`full`, `shrink`, `error`", "`full`", "where the ball does not fit"),
     key("surface", "`auto`, `stitch`, `field`, `keep`", "`auto`", "what carries the blend"),
     key("spine", "`contact`, `offset`", "`contact`", "how the path of the ball's centre is found"),
     key("alpha", "1 to 16", "1.75", "reach of the base patches, in radii"),

@@ -5,7 +5,8 @@ use fusion::compose::{self, compose};
 use fusion::cut::{self, PlaneCut, cut};
 use fusion::mesh_core::{Watch, shapes};
 use fusion::{
-    Error, Operation, Region, cluster, detail, detail_transfer, features, join, remesh, remeshing, round, sharpen,
+    Choice, Error, Operation, Region, cluster, detail, detail_transfer, features, join, remesh, remeshing, round,
+    sharpen,
 };
 use glam::{DQuat, DVec3};
 use mesh_io::{Format, Model};
@@ -38,7 +39,8 @@ fn joined(surface: Surface) -> Job {
         Model::from(shapes::posed(ball, DQuat::from_axis_angle(DVec3::new(0.6, 0.64, 0.48), z), DVec3::Z * z))
     });
     let blend = Some(blend::Params { surface, ..blend::Params::new(0.2) });
-    let params = join::Params { operation: Operation::Union, blend, format: Format::Obj };
+    let params =
+        join::Params { operation: Operation::Union, blend, seams: join::SeamChoice::default(), format: Format::Obj };
     let parts = [low, high];
     Box::new(move |watch| join::join(&parts, &params, watch).map(drop))
 }
@@ -46,8 +48,7 @@ fn joined(surface: Surface) -> Job {
 fn rounded_cube() -> round::Params {
     round::Params {
         features: features::Params::default(),
-        near: vec![DVec3::new(0.0, 0.5, 0.5)],
-        picked: vec![],
+        choice: Choice { near: vec![DVec3::new(0.0, 0.5, 0.5).into()], ..Choice::default() },
         blend: blend::Params::new(0.1),
         format: Format::Obj,
     }

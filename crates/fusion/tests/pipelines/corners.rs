@@ -2,7 +2,7 @@
 
 use fusion::blend::{Blended, Overlap, Params, blend, max_radius};
 use fusion::features::{self, feature_curves};
-use fusion::round;
+use fusion::{Choice, round};
 use glam::DVec3;
 use mesh_core::{Connected, Faces, Positions, TriMesh, VertexId, VertexOrigin, Watch, shapes, volume};
 use mesh_io::{Format, Model};
@@ -66,13 +66,17 @@ fn edges_that_meet_in_pairs_are_one_curve() {
     let cube = Model::from(shapes::cuboid(DVec3::ONE));
     let params = round::Params {
         features: features::Params::default(),
-        picked: vec![],
-        near: [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y].map(|side| 0.5 * (side + DVec3::Z)).to_vec(),
+        choice: Choice {
+            near: [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y]
+                .map(|side| (0.5 * (side + DVec3::Z)).into())
+                .to_vec(),
+            ..Choice::default()
+        },
         blend: Params { overlap: Overlap::Error, ..Params::new(0.1) },
         format: Format::Ply,
     };
     let figures = round::round(&cube, &params, &Watch::default()).unwrap().report.figures;
-    assert_eq!(["curves", "strips", "corners"].map(|f| figures[f]), [1.0, 1.0, 0.0]);
+    assert_eq!(["curves", "strips", "corners"].map(|f| figures[f]), [4.0, 1.0, 0.0]);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use fusion::blend::{Blended, Overlap, Params, blend};
 use fusion::features::{self, feature_curves};
-use fusion::{cluster, round, sharpen};
+use fusion::{Choice, cluster, round, sharpen};
 use glam::{DQuat, DVec3};
 use mesh_core::{
     Connected, Faces, Positions, TriMesh, VertexId, Watch, centroid, shapes, triangle_normal, validate, volume,
@@ -137,8 +137,7 @@ proptest! {
         let [a, b] = connected.ends(curves[edge % curves.len()].halfedges[0]);
         let rounding = round::Params {
             features: features::Params::default(),
-            near: vec![a.midpoint(b)],
-            picked: vec![],
+            choice: Choice { near: vec![a.midpoint(b).into()], ..Choice::default() },
             blend: Params::new(radius),
             format: Format::Off,
         };

@@ -1,7 +1,7 @@
 //! Primitives as anyone makes them, in places where everything coincides.
 
 use fusion::blend::{self, Overlap, Surface};
-use fusion::join::{Params, join};
+use fusion::join::{Params, SeamChoice, join};
 use glam::{DQuat, DVec3};
 use mesh_core::{Watch, shapes, validate};
 use mesh_io::{Format, Model};
@@ -17,7 +17,7 @@ fn a_post_with_an_edge_on_the_plates_diagonal() {
         let parts = [post, plate.clone()];
         for operation in [Operation::Union, Operation::Difference, Operation::Intersection] {
             let blend = blend::Params { overlap: Overlap::Error, ..blend::Params::new(0.1) };
-            let params = Params { operation, blend: Some(blend), format: Format::Obj };
+            let params = Params { operation, blend: Some(blend), seams: SeamChoice::default(), format: Format::Obj };
             let made = join(&parts, &params, &Watch::default()).unwrap();
             assert!(validate(&made.model.mesh).is_closed());
             assert_eq!(made.report.figures["strips"], 2.0);
@@ -39,7 +39,12 @@ fn films_far_thinner_than_the_ball_are_refused_at_once() {
         };
     }
     let blend = blend::Params { surface: Surface::Field, ..blend::Params::new(0.03) };
-    let params = Params { operation: Operation::Difference, blend: Some(blend), format: Format::Obj };
+    let params = Params {
+        operation: Operation::Difference,
+        blend: Some(blend),
+        seams: SeamChoice::default(),
+        format: Format::Obj,
+    };
     let refusal = join(&[block, taken.into()], &params, &Watch::default()).err().unwrap().to_string();
     assert!(refusal.contains("no ball touches both sides"), "{refusal}");
 }

@@ -1,7 +1,7 @@
 //! Roundings taken back, against the solids they were made from.
 
 use fusion::sharpen::{Params, Refusal, sharpen};
-use fusion::{Error, Outcome, blend, features, join, round};
+use fusion::{Choice, Error, Outcome, blend, features, join, round};
 use glam::{DQuat, DVec3};
 use mesh_core::{TriMesh, VertexId, Watch, shapes, volume};
 use mesh_io::{Format, Model};
@@ -11,8 +11,7 @@ use std::f64::consts::FRAC_PI_2;
 fn rounded(mesh: TriMesh, near: &[DVec3], radius: f64) -> Model {
     let params = round::Params {
         features: features::Params::default(),
-        near: near.to_vec(),
-        picked: vec![],
+        choice: Choice { near: near.iter().map(|&p| p.into()).collect(), ..Choice::default() },
         blend: blend::Params::new(radius),
         format: Format::Off,
     };
@@ -71,7 +70,12 @@ fn a_post_stands_on_its_plate_again() {
     let post = shapes::posed(shapes::cylinder(1.0, 2.0, 48, 2), DQuat::IDENTITY, DVec3::new(0.01, 0.02, 0.25));
     let parts = [Model::from(plate), Model::from(post)];
     let joined = |blend| {
-        let params = join::Params { operation: fusion::Operation::Union, blend, format: Format::Off };
+        let params = join::Params {
+            operation: fusion::Operation::Union,
+            blend,
+            seams: join::SeamChoice::default(),
+            format: Format::Off,
+        };
         fusion::join(&parts, &params, &Watch::default()).unwrap().model
     };
     let (plain, filleted) = (joined(None), joined(Some(blend::Params::new(0.2))));
