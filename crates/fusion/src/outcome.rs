@@ -132,10 +132,12 @@ pub(crate) fn account(blended: &Blended, params: &blend::Params, report: &mut Re
     let mut shrunk = blended.shrunk.clone();
     shrunk.sort_by(|a, b| a.1.total_cmp(&b.1));
     for (at, radius) in shrunk {
-        report.warnings.push(format!(
-            "a ball of radius {} does not fit near {at}: one of radius {radius} is used there, fading into the full one",
-            params.radius
-        ));
+        let instead = if radius > 0.0 {
+            format!("one of radius {radius} is used there, fading into the full one")
+        } else {
+            "the curve stays sharp there".into()
+        };
+        report.warnings.push(format!("a ball of radius {} does not fit near {at}: {instead}", params.radius));
     }
 }
 

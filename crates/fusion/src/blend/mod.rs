@@ -62,7 +62,7 @@ use network::Network;
 pub use params::{Overlap, Params, Surface};
 use profiles::Profiles;
 pub use radii::Radii;
-use rolling::{REACH_AHEAD, roll_missing, step_length};
+use rolling::{REACH_AHEAD, affordable, roll_missing, step_length};
 use sew::{between, sew};
 use sketch::piece_of;
 pub use sketch::{Drawing, Sketch};
@@ -139,6 +139,7 @@ pub fn blend(
     if let Surface::Keep(how) = &params.surface {
         return keep::blend(mesh, curves, params, how, watch);
     }
+    affordable(mesh, curves, params)?;
     if let Some(near) = vicinity::vicinity(mesh, curves, params) {
         match blend_whole(&near.mesh, &near.curves, params, watch) {
             Ok(blended) if near.holds(&blended) => return Ok(near.put_back(blended)),
