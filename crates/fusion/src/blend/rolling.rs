@@ -127,3 +127,33 @@ pub(super) fn roll_missing(
     }
     if places.is_empty() { Ok(()) } else { Err(Trouble::at("the ball cannot roll on", places)) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::features::{self, feature_curves};
+    use glam::DVec3;
+    use mesh_core::shapes;
+
+    fn edges_of(mesh: TriMesh) -> (Connected<TriMesh>, Vec<BlendCurve>) {
+        let mesh = Connected::new(mesh).unwrap();
+        let curves = feature_curves(&mesh, &features::Params::default());
+        let curves = curves.iter().map(|c| BlendCurve { halfedges: c.halfedges.clone(), closed: c.closed }).collect();
+        (mesh, curves)
+    }
+
+    /// The least radius told is taken, and one a little smaller is not; it belongs to the model's size.
+    #[test]
+    fn a_radius_too_small_for_its_curves_is_refused() {
+        for size in [1.0, 1e-4, 1e5] {
+            for mesh in [shapes::cuboid(DVec3::splat(size)), shapes::cylinder(0.5 * size, size, 200, 4)] {
+                let (mesh, curves) = edges_of(mesh);
+                let refused = affordable(&mesh, &curves, &Params::new(1e-9 * size));
+                let Err(Error::TooFine { radius, vertices, least }) = refused else { panic!("{refused:?}") };
+                assert!(radius == 1e-9 * size && vertices > MOST && (1e-8..1e-3).contains(&(least / size)), "{least}");
+                assert!(affordable(&mesh, &curves, &Params::new(least)).is_ok());
+                assert!(affordable(&mesh, &curves, &Params::new(0.75 * least)).is_err());
+            }
+        }
+    }
+}

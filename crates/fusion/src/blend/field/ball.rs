@@ -136,3 +136,73 @@ pub(crate) fn touches_both(sides: &Sides<'_>, radius: &RadiusField, p: DVec3) ->
     let touches = |c: DVec3| (0..2).all(|k| sides.distance(k, c) < (1.0 + 1e-2) * r);
     nearest_center(sides, r, p).is_some_and(touches)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DQuat;
+    use mesh_core::{Connected, TriMesh, Watch, shapes};
+    use spine::{BlendCurve, Convexity};
+    use tri_intersect::{Boolean, Operation, Params, boolean};
+
+    const R: f64 = 0.3;
+
+    fn union(a: &TriMesh, b: &TriMesh) -> Boolean {
+        let [a, b] = [a, b].map(|m| Connected::new(m.clone()).unwrap());
+        boolean(&a, &b, Operation::Union, &Params::default(), &Watch::default()).unwrap()
+    }
+
+    /// Two crossed bars on a plate whose top is z = 0: four corners of three planes each.
+    fn cross_on_plate() -> (Connected<TriMesh>, Vec<BlendCurve>) {
+        let bar = |size: DVec3, z: f64| shapes::posed(shapes::cuboid(size), DQuat::IDENTITY, DVec3::new(0.0, 0.0, z));
+        let cross = union(&bar(DVec3::new(4.0, 1.0, 2.0), 0.5), &bar(DVec3::new(1.0, 4.0, 2.4), 0.5)).mesh;
+        let whole = union(&bar(DVec3::new(8.0, 8.0, 1.0), -0.5), &cross);
+        let mesh = Connected::new(whole.mesh).unwrap();
+        let curves = whole.seams.iter().map(|s| BlendCurve::from_vertices(&mesh, &s.vertices).unwrap()).collect();
+        (mesh, curves)
+    }
+
+    #[test]
+    fn in_a_corner_the_ball_rests_on_three_planes() {
+        let (mesh, curves) = cross_on_plate();
+        let sides = Sides::new(&mesh, &curves, Convexity::Concave).unwrap();
+        for p in [DVec3::new(0.5, 0.5, 0.0), DVec3::new(0.6, 0.5, 0.1), DVec3::new(0.55, 0.62, 0.0)] {
+            let center = nearest_center(&sides, R, p).unwrap();
+            assert!(center.distance(DVec3::new(0.8, 0.8, 0.3)) < 1e-6, "{p}: {center}");
+        }
+        let at = target(&sides, &RadiusField::constant(R), DVec3::new(0.5, 0.5, 0.0)).unwrap();
+        assert!(at.distance(DVec3::new(0.8, 0.8, 0.3) - R / 3f64.sqrt() * DVec3::ONE) < 1e-6, "{at}");
+    }
+
+    /// Of all centres on a fine grid that keep a radius away from the surface, none is nearer.
+    #[test]
+    fn no_other_ball_outside_is_nearer() {
+        let (mesh, curves) = cross_on_plate();
+        let sides = Sides::new(&mesh, &curves, Convexity::Concave).unwrap();
+        let (mut random, mut tried) = (1u32, 0);
+        let mut unit = || {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(random >> 8) / f64::from(1u32 << 24)
+        };
+        for _ in 0..24 {
+            // On the plate beside a wall, around the end of a bar, and on the wall.
+            let p = match tried % 3 {
+                0 => DVec3::new(0.5 + 1.4 * unit(), 0.5 + 0.25 * unit(), 0.0),
+                1 => DVec3::new(2.0 + 0.25 * unit(), 0.6 * unit(), 0.0),
+                _ => DVec3::new(0.5 + 1.4 * unit(), 0.5, 0.25 * unit()),
+            };
+            tried += 1;
+            let center = nearest_center(&sides, R, p).unwrap();
+            let clearance = |c: DVec3| sides.distance(0, c).min(sides.distance(1, c));
+            assert!(clearance(center) > (1.0 - 1e-3) * R, "{p}: {center}");
+            for i in 0..17 * 17 * 17 {
+                let cell = DVec3::new(f64::from(i % 17), f64::from(i / 17 % 17), f64::from(i / 289)) - 8.0;
+                let c = center + 0.08 * R * cell;
+                let outside = c.z > 0.0 && (0..2).all(|k| sides.seen(k, c).unwrap().distance > 0.0);
+                if outside && clearance(c) >= R {
+                    assert!(c.distance(p) > center.distance(p) - 1e-3 * R, "{p}: {c} is nearer than {center}");
+                }
+            }
+        }
+    }
+}
