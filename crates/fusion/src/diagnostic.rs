@@ -157,9 +157,12 @@ impl Diagnostic {
     }
 
     pub(crate) fn radius_reduced(at: DVec3, asked: f64, used: f64) -> Self {
-        let message = format!(
-            "a ball of radius {asked} does not fit near {at}: one of radius {used} is used there, fading into the full one"
-        );
+        let instead = if used > 0.0 {
+            format!("one of radius {used} is used there, fading into the full one")
+        } else {
+            "the curve stays sharp there".to_string()
+        };
+        let message = format!("a ball of radius {asked} does not fit near {at}: {instead}");
         Self::new(Code::RadiusReduced, Severity::Warning, message)
             .at(at)
             .with("radius", asked)

@@ -62,7 +62,13 @@ pub(crate) fn blend(
         };
         let Some(trouble) = refusal.take_if(|_| !matches!(failure, Error::Cancelled(_))) else { return Err(failure) };
         if !handed_over.contains(&false) {
-            return explained(mesh, curves, params, trouble, watch);
+            if params.overlap == Overlap::Error {
+                return explained(mesh, curves, params, trouble, watch);
+            }
+            let told = so_far.blended.fallbacks;
+            so_far = SoFar::new(mesh, curves, params.radius);
+            so_far.blended.fallbacks = told;
+            return by_network(so_far, &handed_over, params, watch);
         }
         // Some of the curves alone may not tell two sides apart.
         handed_over.fill(true);
@@ -80,7 +86,14 @@ fn by_network(mut so_far: SoFar<'_>, marked: &[bool], params: &Params, watch: &W
     let mut refusal = None;
     for (group, first) in groups(mesh, curves, marked, params.radius) {
         let before = so_far.clone();
-        let failure = match by_envelope(&mut so_far, &group, first, params, watch) {
+        // The envelope of a whole scan would fill its dents, too.
+        let closed = group.iter().zip(curves).all(|(own, curve)| !own || curve.closed);
+        let made = if closed && field::serves(curves, params) {
+            Err(Trouble::at("the blend fails as a field", vec![]))
+        } else {
+            by_envelope(&mut so_far, &group, first, params, watch)
+        };
+        let failure = match made {
             Ok(()) => continue,
             Err(Trouble::Cancelled(c)) => return Err(c.into()),
             Err(trouble) => trouble,
@@ -129,7 +142,9 @@ fn by_envelope(
         let chosen = so_far.pieces(own);
         if !chosen.is_empty() {
             let present = so_far.mesh.as_ref().unwrap_or(mesh);
-            let made = envelope::blend(present, &chosen, convexity, params, watch)?;
+            let mut made = envelope::blend(present, &chosen, convexity, params, watch)?;
+            let by_ball = |i: usize| CurveBlend::made(Method::Envelope, params.radius, curves[i].length(mesh), 1.0);
+            made.curves = (0..curves.len()).filter(|&i| own(i)).map(by_ball).collect();
             so_far.add(made, own);
         }
     }
@@ -265,6 +280,9 @@ fn neighbours(mesh: &Connected<TriMesh>, curves: &[BlendCurve], marked: &[bool],
 /// Blends the marked curves as fields, one for valleys and one for ridges.
 fn add_fields(so_far: &mut SoFar<'_>, by_field: &[bool], params: &Params, watch: &Watch) -> Result<(), Error> {
     let (mesh, curves) = (so_far.input, so_far.all);
+    // A field has nothing better than a smaller ball for the places where the full one fails.
+    let overlap = if params.overlap == Overlap::Full { Overlap::Shrink } else { params.overlap };
+    let params = &Params { overlap, ..params.clone() };
     for convexity in [Convexity::Concave, Convexity::Convex] {
         let own = |i: usize| by_field[i] && curves[i].convexity(mesh).unwrap_or(Convexity::Concave) == convexity;
         if !(0..curves.len()).any(own) {

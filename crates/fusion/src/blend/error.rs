@@ -28,6 +28,18 @@ pub enum Error {
         /// The largest of the smaller radii tried that works everywhere.
         workable: Option<f64>,
     },
+    /// The blend would have too many vertices.
+    #[error(
+        "a ball of radius {radius} is too small for these curves: the blend would have some {vertices:.0e} vertices; the least radius is about {least:.1e}"
+    )]
+    TooFine {
+        /// The radius asked for.
+        radius: f64,
+        /// About how many vertices the blend would have.
+        vertices: f64,
+        /// About the least radius that is taken, in model units.
+        least: f64,
+    },
     /// The ball could not be rolled for a reason that no smaller radius mends.
     #[error(transparent)]
     Spine(#[from] spine::Error),

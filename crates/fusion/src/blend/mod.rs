@@ -69,7 +69,7 @@ use network::Network;
 pub use params::{Overlap, Params, Surface};
 use profiles::Profiles;
 pub use radii::Radii;
-use rolling::{REACH_AHEAD, roll_missing, step_length};
+use rolling::{REACH_AHEAD, affordable, roll_missing, step_length};
 use sew::{between, sew};
 use sketch::piece_of;
 pub use sketch::{Drawing, Sketch};
@@ -152,6 +152,7 @@ pub fn blend(
         blended.curves = curves.iter().map(made).collect();
         return Ok(blended);
     }
+    affordable(mesh, curves, params)?;
     if let Some(near) = vicinity::vicinity(mesh, curves, params) {
         match blend_whole(&near.mesh, &near.curves, params, watch) {
             Ok(blended) if near.holds(&blended) => return Ok(near.put_back(blended)),

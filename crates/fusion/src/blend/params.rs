@@ -59,15 +59,12 @@ pub enum Surface {
 pub enum Overlap {
     /// Refuse, naming the place and a radius that works.
     Error,
-    /// Use the ball's envelope there; a smaller ball along a whole curve where none of the full radius can act, and no ball
-    /// where that fails, too.
+    /// Use the envelope of all balls of the full radius there; where no such ball can act, a smaller one, and where none is
+    /// found leave the curve sharp, and say so.
     #[default]
     Full,
     /// Use a smaller ball there, fading into the full one, and say so.
     Shrink,
-    /// Let the ball's envelope trim itself: where a sweep of the full ball would fold, the blend is the outside of all
-    /// places the full ball can take, as a field gives it. Refused where a field cannot serve.
-    Trim,
 }
 
 impl Params {

@@ -1,14 +1,15 @@
 //! The rails: a ball rolled along every curve that has none yet.
 
-use super::Params;
 use super::dwindle::running_out;
 use super::mends::Mends;
 use super::network::Network;
 use super::trouble::Trouble;
+use super::{Error, Params};
 use mesh_core::{Adjacency, Connected, Faces, Positions, TriMesh};
 use profile_nurbs::Profile;
 use rayon::prelude::*;
 use spine::{BlendCurve, Rail, roll_or_halt};
+use std::f64::consts::PI;
 
 /// Chord length along and across: matched to the input's edges, within one and two tenths of the radius, or less where
 /// the tolerance asks for it.
@@ -33,6 +34,41 @@ fn longest_stride(mesh: &Connected<TriMesh>, curve: &BlendCurve, radius: f64) ->
     let length = curve.length(mesh);
     let edge = if curve.closed { length / (8 * curve.halfedges.len().max(1)) as f64 } else { length };
     edge.min(length / 64.0).min(4.0 * radius)
+}
+
+/// Vertices of a blend at most: some two gigabytes while it is made.
+const MOST: f64 = 4e6;
+/// Balls at either joint of a curve's edges where it bends, at most: a rim that is cut fine takes fewer.
+const AT_JOINTS: f64 = 20.0;
+
+/// About how many vertices a blend of `radius` has: rings of points along the arc, a chord apart where the curve bends
+/// and up to four radii where it is straight. O(n) for n edges.
+fn estimated_vertices(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params, radius: f64) -> f64 {
+    let least = radius * params.radii.least();
+    let step = step_length(mesh, curves, &Params { radius, ..params.clone() });
+    let rings = |curve: &BlendCurve| {
+        let (length, edges) = (curve.length(mesh), curve.halfedges.len() as f64);
+        let longest = longest_stride(mesh, curve, radius).max(step);
+        (length / longest + AT_JOINTS * edges).min(length / step)
+    };
+    curves.iter().map(rings).sum::<f64>() * (1.0 + PI * least / step)
+}
+
+/// Refuses a radius so small for its curves that the blend would not fit into memory, before anything is made.
+///
+/// # Errors
+/// [`Error::TooFine`], with about the least radius that is taken.
+pub(super) fn affordable(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params) -> Result<(), Error> {
+    let estimate = |radius: f64| estimated_vertices(mesh, curves, params, radius);
+    let vertices = estimate(params.radius);
+    if vertices <= MOST {
+        return Ok(());
+    }
+    let mut least = params.radius;
+    while estimate(least) > MOST && least.is_finite() {
+        least *= 1.25;
+    }
+    Err(Error::TooFine { radius: params.radius, vertices, least })
 }
 
 /// Rolls along the curves that have no rail.
@@ -90,4 +126,34 @@ pub(super) fn roll_missing(
         }
     }
     if places.is_empty() { Ok(()) } else { Err(Trouble::at("the ball cannot roll on", places)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::features::{self, feature_curves};
+    use glam::DVec3;
+    use mesh_core::shapes;
+
+    fn edges_of(mesh: TriMesh) -> (Connected<TriMesh>, Vec<BlendCurve>) {
+        let mesh = Connected::new(mesh).unwrap();
+        let curves = feature_curves(&mesh, &features::Params::default());
+        let curves = curves.iter().map(|c| BlendCurve { halfedges: c.halfedges.clone(), closed: c.closed }).collect();
+        (mesh, curves)
+    }
+
+    /// The least radius told is taken, and one a little smaller is not; it belongs to the model's size.
+    #[test]
+    fn a_radius_too_small_for_its_curves_is_refused() {
+        for size in [1.0, 1e-4, 1e5] {
+            for mesh in [shapes::cuboid(DVec3::splat(size)), shapes::cylinder(0.5 * size, size, 200, 4)] {
+                let (mesh, curves) = edges_of(mesh);
+                let refused = affordable(&mesh, &curves, &Params::new(1e-9 * size));
+                let Err(Error::TooFine { radius, vertices, least }) = refused else { panic!("{refused:?}") };
+                assert!(radius == 1e-9 * size && vertices > MOST && (1e-8..1e-3).contains(&(least / size)), "{least}");
+                assert!(affordable(&mesh, &curves, &Params::new(least)).is_ok());
+                assert!(affordable(&mesh, &curves, &Params::new(0.75 * least)).is_err());
+            }
+        }
+    }
 }

@@ -6,7 +6,7 @@ use mesh_core::{
     Adjacency, Connected, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId,
     corner_angle, face_normals,
 };
-use mesh_query::{ClosestPoint, TriBvh};
+use mesh_query::{ClosestPoint, TriBvh, closest_point_on_triangle};
 use rayon::prelude::*;
 use spine::{BlendCurve, Convexity};
 use std::collections::VecDeque;
@@ -39,6 +39,8 @@ pub(crate) struct Seen {
     pub foot: DVec3,
     /// The smoothed normal there, towards the ball's side.
     pub normal: DVec3,
+    /// The face that the nearest point is on.
+    pub face: FaceId,
 }
 
 impl<'a> Sides<'a> {
@@ -71,15 +73,24 @@ impl<'a> Sides<'a> {
 
     /// Side `k` from `p`; `None` only for points that are not finite.
     pub fn seen(&self, k: usize, p: DVec3) -> Option<Seen> {
-        let near = self.trees[k].closest_point(self.mesh, p)?;
+        Some(self.describe(&self.trees[k].closest_point(self.mesh, p)?, p))
+    }
+
+    /// One face from `p`.
+    pub fn seen_on(&self, face: FaceId, p: DVec3) -> Seen {
+        let (point, barycentric) = closest_point_on_triangle(p, self.mesh.triangle(face));
+        self.describe(&ClosestPoint { face, point, barycentric, distance: point.distance(p) }, p)
+    }
+
+    fn describe(&self, near: &ClosestPoint, p: DVec3) -> Seen {
         let normal = self.sign * self.smooth(near.face, near.barycentric);
-        let side = self.sign * self.pseudonormal(&near);
+        let side = self.sign * self.pseudonormal(near);
         let away = p - near.point;
         let outside = if away.dot(side) >= 0.0 { 1.0 } else { -1.0 };
         // Right on the surface, the direction away from it is noise.
         let size = self.mesh.triangle(near.face)[0].distance(p).max(near.distance);
         let gradient = if near.distance > 1e-9 * size { (outside * away).normalize_or(normal) } else { normal };
-        Some(Seen { distance: outside * near.distance, gradient, foot: near.point, normal })
+        Seen { distance: outside * near.distance, gradient, foot: near.point, normal, face: near.face }
     }
 
     /// Unsigned distance of `p` to side `k`.

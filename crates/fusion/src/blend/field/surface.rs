@@ -6,11 +6,14 @@ use super::plate::Plate;
 use super::sides::Sides;
 use crate::blend::trouble::Trouble;
 use glam::DVec3;
-use mesh_core::{Connected, Faces, HalfedgeId, Positions, TriMesh, VertexId, Watch, boundary_loops};
+use mesh_core::{
+    Adjacency, Connected, Faces, HalfedgeId, Positions, TriMesh, VertexId, Watch, area_vector, boundary_loops,
+};
 use rayon::prelude::*;
 use remesh::{Frozen, Projection, Sizing, graded_sizes};
 use spine::RadiusField;
-use std::collections::BTreeSet;
+use std::cmp::Reverse;
+use std::collections::{BTreeSet, BinaryHeap};
 
 /// Length over which the plate may depart from the balls, in radii: they are followed closely where they are smooth.
 const SIGMA: f64 = 0.2;
@@ -26,6 +29,15 @@ const SLOPE: f64 = 0.3;
 const FINEST: f64 = 0.6;
 /// Window along a linkage over which normals and tangents are averaged, in radii.
 const WINDOW: f64 = 0.25;
+
+/// Distance from the linkages over which the plate fades into the balls, in radii.
+const FADE: f64 = 0.4;
+/// Balls farther from the plate than this, in radii, are not its own.
+const ASTRAY: f64 = 0.15;
+/// Cosine of the angle by which a face may turn when its corners are put onto balls.
+const TILTED: f64 = 0.85;
+/// How often corners of faces that turn more are put back.
+const UNDONE: usize = 4;
 
 /// Draws the piece onto the balls. Its topology stays, so it closes the hole whatever its shape.
 pub(crate) fn draw(
@@ -120,7 +132,65 @@ fn settle(mesh: &Connected<&TriMesh>, sides: &Sides<'_>, radius: &RadiusField, e
         plate.settle(&mut x, &lifted, &pull, 1e-4);
     }
     x.truncate(n);
+    if last {
+        let movable: Vec<bool> = (0..n).map(|v| plate.moves(v)).collect();
+        seat(mesh, sides, radius, &movable, &mut x);
+    }
     x
+}
+
+/// Puts the points of the plate onto the balls they are next to, fading towards the linkages, where the plate leads over
+/// to the surface as it is. Where that would fold faces, they stay on the plate.
+fn seat(mesh: &Connected<&TriMesh>, sides: &Sides<'_>, radius: &RadiusField, movable: &[bool], x: &mut [DVec3]) {
+    let r = |v: usize| radius.at(x[v]).0;
+    let within = inward(mesh, movable, x);
+    let step = |v: usize| {
+        let share = (within[v] / (FADE * r(v))).min(1.0);
+        let there = target(sides, radius, x[v]).filter(|t| t.distance(x[v]) < ASTRAY * r(v));
+        there.map_or(DVec3::ZERO, |t| share * share * (3.0 - 2.0 * share) * (t - x[v]))
+    };
+    let steps: Vec<DVec3> =
+        (0..x.len()).into_par_iter().with_min_len(16).map(|v| if movable[v] { step(v) } else { DVec3::ZERO }).collect();
+    let mut taken = vec![true; x.len()];
+    for _ in 0..UNDONE {
+        let at = |v: VertexId| x[v.index()] + if taken[v.index()] { steps[v.index()] } else { DVec3::ZERO };
+        let bends = |f: &&[VertexId; 3]| {
+            let before = area_vector(f.map(|v| x[v.index()]));
+            let after = area_vector(f.map(at));
+            before.dot(after) < TILTED * before.length() * after.length()
+        };
+        let bent: Vec<VertexId> =
+            mesh.mesh().faces.iter().filter(bends).flatten().copied().filter(|v| taken[v.index()]).collect();
+        if bent.is_empty() {
+            break;
+        }
+        bent.iter().for_each(|v| taken[v.index()] = false);
+    }
+    for v in (0..x.len()).filter(|&v| taken[v]) {
+        x[v] += steps[v];
+    }
+}
+
+/// Distance of each vertex from those that do not move, along edges.
+fn inward(mesh: &Connected<&TriMesh>, movable: &[bool], x: &[DVec3]) -> Vec<f64> {
+    let mut best: Vec<f64> = movable.iter().map(|&m| if m { f64::INFINITY } else { 0.0 }).collect();
+    // Non-negative floats are ordered as their bits are.
+    let mut queue: BinaryHeap<Reverse<(u64, VertexId)>> =
+        mesh.vertex_ids().filter(|v| !movable[v.index()]).map(|v| Reverse((0, v))).collect();
+    while let Some(Reverse((bits, v))) = queue.pop() {
+        let d = f64::from_bits(bits);
+        if d > best[v.index()] {
+            continue;
+        }
+        for w in mesh.ring(v).map(|h| mesh.head(h)) {
+            let there = d + x[v.index()].distance(x[w.index()]);
+            if there < best[w.index()] {
+                best[w.index()] = there;
+                queue.push(Reverse((there.to_bits(), w)));
+            }
+        }
+    }
+    best
 }
 
 /// Points beyond a boundary loop, one for each of its vertices, in the planes that the surface there is to be tangent to.

