@@ -3,7 +3,8 @@
 use super::corner::closest_between;
 use super::trouble::Trouble;
 use super::{
-    Blended, CurveBlend, Error, LeftSharp, Method, Overlap, Params, ROUNDS, Surface, attempt, envelope, explained, field,
+    Blended, CurveBlend, Error, LeftSharp, Method, Overlap, Params, ROUNDS, Surface, attempt, envelope, explained,
+    field,
 };
 use glam::DVec3;
 use mesh_core::{
@@ -86,13 +87,21 @@ fn by_network(mut so_far: SoFar<'_>, marked: &[bool], params: &Params, watch: &W
     let mut refusal = None;
     for (group, first) in groups(mesh, curves, marked, params.radius) {
         let before = so_far.clone();
+        let length: f64 = (0..curves.len()).filter(|&i| group[i]).map(|i| curves[i].length(mesh)).sum();
         // The envelope of a whole scan would fill its dents, too.
         let closed = group.iter().zip(curves).all(|(own, curve)| !own || curve.closed);
-        let made = if closed && field::serves(curves, params) {
-            Err(Trouble::at("the blend fails as a field", vec![]))
-        } else {
-            by_envelope(&mut so_far, &group, first, params, watch)
-        };
+        let mut made = Err(Trouble::at("the blend fails as a field", vec![]));
+        if !(closed && field::serves(curves, params)) {
+            // At corners of both kinds the order matters little; where one fails, the other may not.
+            for first in [first, first.opposite()] {
+                so_far = before.clone();
+                made = by_envelope(&mut so_far, &group, first, params, watch);
+                let again = length <= SHORT * params.radius && is_mixed(mesh, curves, &group);
+                if made.is_ok() || matches!(made, Err(Trouble::Cancelled(_))) || !again {
+                    break;
+                }
+            }
+        }
         let failure = match made {
             Ok(()) => continue,
             Err(Trouble::Cancelled(c)) => return Err(c.into()),
@@ -124,6 +133,12 @@ fn by_network(mut so_far: SoFar<'_>, marked: &[bool], params: &Params, watch: &W
     }
 }
 
+/// Whether a network has ridges and valleys.
+fn is_mixed(mesh: &Connected<TriMesh>, curves: &[BlendCurve], group: &[bool]) -> bool {
+    let mut kinds = (0..curves.len()).filter(|&i| group[i]).map(|i| curves[i].convexity(mesh).ok());
+    kinds.next().is_some_and(|first| kinds.any(|kind| kind != first))
+}
+
 /// Blends a network by the envelope, one convexity after the other.
 fn by_envelope(
     so_far: &mut SoFar<'_>,
@@ -151,6 +166,8 @@ fn by_envelope(
     Ok(())
 }
 
+/// Networks longer than this, in radii, are not tried in the other order.
+const SHORT: f64 = 300.0;
 /// Shares of the radius at which a network is swept where the envelope of the full ball fails.
 const SHARES: [f64; 3] = [1.0, 0.5, 0.25];
 /// A curve that stays sharp, a place where the ball fails and why.

@@ -1,6 +1,6 @@
 //! Open curves: corners, stops and run-outs, against solids whose rounding is known.
 
-use fusion::blend::{Blended, Overlap, Params, blend, max_radius};
+use fusion::blend::{Blended, Method, Overlap, Params, blend, max_radius};
 use fusion::features::{self, feature_curves};
 use fusion::{Choice, round};
 use glam::DVec3;
@@ -231,4 +231,69 @@ fn needles_beside_an_edge_are_rolled_on() {
         let worst = done.mesh.positions.iter().map(off).fold(0.0, f64::max);
         assert!(worst <= 1e-9, "{worst} off with radius {r}");
     }
+}
+
+/// The unit cube's two opposite edges of one face with a ball of half its side: the face is consumed whole, and where the
+/// balls of both edges meet the result is half a cylinder.
+#[test]
+fn a_face_as_wide_as_two_balls_is_consumed() {
+    let mesh = Connected::new(shapes::cuboid(DVec3::ONE)).unwrap();
+    let along_y_on_top = |c: &BlendCurve| {
+        let [a, b] = mesh.ends(c.halfedges[0]);
+        (a - b).normalize().y.abs() > 0.9 && a.z > 0.0
+    };
+    let chosen: Vec<BlendCurve> = curves(&mesh).into_iter().filter(along_y_on_top).collect();
+    assert_eq!(chosen.len(), 2);
+    let done = blend(&mesh, &chosen, &Params::new(0.5), &Watch::default()).unwrap();
+    assert!(tri_intersect::self_intersections(&done.mesh, &Watch::default()).unwrap().is_empty());
+    // Half a cylinder on half a cube.
+    let exact = 0.5 + 0.5 * PI * 0.25;
+    let off = (volume(&done.mesh) - exact).abs();
+    assert!(off < 0.01, "{off}");
+}
+
+/// A box with a hole through its end faces: both ends of a rounded edge stop at faces whose triangles all lead to the hole.
+#[test]
+fn an_edge_stops_cleanly_at_faces_with_holes() {
+    let drill = shapes::cylinder(4.0, 20.0, 32, 1);
+    let plate = Connected::new(shapes::cuboid(DVec3::new(40.0, 20.0, 6.0))).unwrap();
+    let drill = Connected::new(drill).unwrap();
+    let how = tri_intersect::Params::default();
+    let cut = tri_intersect::boolean(&plate, &drill, tri_intersect::Operation::Difference, &how, &Watch::default());
+    let mesh = Connected::new(cut.unwrap().mesh).unwrap();
+    let upright = |c: &BlendCurve| {
+        let [a, b] = mesh.ends(c.halfedges[0]);
+        !c.closed && a.x < -19.0 && a.y > 9.0 && (a - b).normalize().z.abs() > 0.9
+    };
+    let chosen: Vec<BlendCurve> = curves(&mesh).into_iter().filter(upright).collect();
+    assert_eq!(chosen.len(), 1);
+    let done = rounded(&mesh, &chosen, &Params::new(1.0));
+    let connected = Connected::new(&done.mesh).unwrap();
+    let sharpest = connected
+        .halfedge_ids()
+        .filter_map(|h| mesh_core::dihedral_angle(&connected, h))
+        .map(f64::abs)
+        .fold(0.0, f64::max);
+    assert!(sharpest.to_degrees() < 91.0, "{}", sharpest.to_degrees());
+    // What a quarter of a cylinder takes from the box' edge, to the chords' accuracy.
+    let taken = volume(&mesh) - volume(&done.mesh);
+    let exact = 6.0 * (1.0 - 0.25 * PI);
+    assert!((taken / exact - 1.0).abs() < 0.02, "{taken} beside {exact}");
+}
+
+/// An open network with corners closer together than their ball needs: nothing is refused, and what is left sharp is told.
+#[test]
+fn what_cannot_be_rounded_stays_sharp_and_is_told() {
+    let mesh = Connected::new(shapes::cuboid(DVec3::new(1.0, 1.0, 0.12))).unwrap();
+    let all = curves(&mesh);
+    let done = blend(&mesh, &all, &Params::new(0.2), &Watch::default());
+    let done = done.unwrap_or_else(|e| panic!("{e}"));
+    assert!(tri_intersect::self_intersections(&done.mesh, &Watch::default()).unwrap().is_empty());
+    assert_eq!(done.curves.len(), all.len());
+    assert!(done.curves.iter().all(|c| c.left_sharp.is_some() == (c.method == Method::Sharp)));
+    let Err(refusal) = blend(&mesh, &all, &Params { overlap: Overlap::Error, ..Params::new(0.2) }, &Watch::default())
+    else {
+        panic!("a ball of 0.2 does not fit into a plate of 0.12")
+    };
+    assert!(refusal.to_string().contains("works"), "{refusal}");
 }

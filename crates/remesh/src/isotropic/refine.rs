@@ -4,6 +4,8 @@ use super::table::{LOCKED, NONE, Table};
 use crate::Error;
 use glam::DVec3;
 use mesh_core::{Adjacency, FaceId, FaceOrigin, Faces, Origins, Positions, TriMesh, VertexId, VertexOrigin};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// Splits edges until none is longer than `wanted` says of its middle; the boundary is kept. Only splits: every new
 /// vertex is the middle of an edge, so the surface stays as it is and its vertices keep ids and bits.
@@ -27,9 +29,12 @@ pub fn refine<M: Faces + Positions + Sync>(
         origins: mesh.vertex_ids().map(|v| VertexOrigin::Input { part: 0, vertex: v }).collect(),
         parents: mesh.face_ids().map(|f| f.0).collect(),
         urged: vec![false; mesh.face_count()],
-        settled: vec![false; 3 * mesh.face_count()],
+        length: vec![Length::Unknown; 3 * mesh.face_count()],
     };
-    while work.sweep(mesh, wanted, least) {}
+    let mut due: BinaryHeap<Reverse<u32>> = (0..work.table.halfedge_count()).map(Reverse).collect();
+    while !due.is_empty() {
+        due = work.sweep(mesh, wanted, least, due);
+    }
     let pieces = work.pieces(mesh.face_count());
     let corners = |f: usize| [0, 1, 2].map(|k| VertexId(work.table.tails[3 * f + k]));
     Ok((
@@ -46,38 +51,75 @@ struct Refined {
     parents: Vec<u32>,
     /// Faces whose longest edge stands in the way of a split.
     urged: Vec<bool>,
-    /// Halfedges known to be short enough.
-    settled: Vec<bool>,
+    /// What is known of each halfedge.
+    length: Vec<Length>,
+}
+
+/// Whether an edge is to be split.
+#[derive(Clone, Copy, PartialEq)]
+enum Length {
+    Unknown,
+    Short,
+    Long,
 }
 
 impl Refined {
-    /// Splits every edge that is too long, or urged, and the longest of both its faces. Returns whether anything was
-    /// done.
-    fn sweep<M: Adjacency>(&mut self, mesh: &M, wanted: &(dyn Fn(DVec3) -> f64 + Sync), least: f64) -> bool {
+    /// Splits every edge among those `due` that is too long, or urged, and the longest of both its faces. Returns those to
+    /// be looked at in the next sweep; none where nothing was done. A sweep goes through the halfedges in order; those
+    /// that it changes behind itself wait for the next.
+    fn sweep<M: Adjacency>(
+        &mut self,
+        mesh: &M,
+        wanted: &(dyn Fn(DVec3) -> f64 + Sync),
+        least: f64,
+        mut due: BinaryHeap<Reverse<u32>>,
+    ) -> BinaryHeap<Reverse<u32>> {
+        let mut next = BinaryHeap::new();
         let mut done = false;
-        let mut h = 0;
-        while h < self.table.halfedge_count() {
-            let t = self.table.twin(h);
-            if t != NONE && h < t && self.table.flags[h as usize] & LOCKED == 0 {
-                let stands = [h, t].map(|h| self.is_longest(h));
-                let urged = [h, t].into_iter().zip(stands).any(|(h, s)| s && self.urged[h as usize / 3]);
-                if urged || !self.settled[h as usize] && self.is_too_long(h, wanted, least) {
-                    if stands == [true, true] {
-                        self.split(mesh, h);
-                        done = true;
-                    } else {
-                        for (side, is_longest) in [h, t].into_iter().zip(stands) {
-                            let face = &mut self.urged[side as usize / 3];
-                            done |= !is_longest && !std::mem::replace(face, true);
-                        }
-                    }
-                } else {
-                    self.settled[h as usize] = true;
-                }
+        while let Some(Reverse(h)) = due.pop() {
+            if due.peek() == Some(&Reverse(h)) {
+                continue;
             }
-            h += 1;
+            let t = self.table.twin(h);
+            if t == NONE || h > t || self.table.flags[h as usize] & LOCKED != 0 {
+                continue;
+            }
+            let stands = [h, t].map(|h| self.is_longest(h));
+            let urged = [h, t].into_iter().zip(stands).any(|(h, s)| s && self.urged[h as usize / 3]);
+            if self.length[h as usize] == Length::Unknown && !urged {
+                let long = self.is_too_long(h, wanted, least);
+                self.length[h as usize] = if long { Length::Long } else { Length::Short };
+            }
+            if !urged && self.length[h as usize] != Length::Long {
+                continue;
+            }
+            if stands == [true, true] {
+                let appended = self.table.halfedge_count() / 3;
+                if self.split(mesh, h) {
+                    let changed = [h / 3, t / 3, appended, appended + 1];
+                    changed.into_iter().for_each(|f| self.look_at(f, h, &mut due, &mut next));
+                    done = true;
+                }
+            } else {
+                for (side, is_longest) in [h, t].into_iter().zip(stands) {
+                    if !is_longest && !std::mem::replace(&mut self.urged[side as usize / 3], true) {
+                        self.look_at(side / 3, h, &mut due, &mut next);
+                        done = true;
+                    }
+                }
+                next.push(Reverse(h));
+            }
         }
-        done
+        if done { next } else { BinaryHeap::new() }
+    }
+
+    /// Makes the edges of a face due: in this sweep if they come after `h`, else in the next. The lower halfedge stands for an
+    /// edge.
+    fn look_at(&self, face: u32, h: u32, due: &mut BinaryHeap<Reverse<u32>>, next: &mut BinaryHeap<Reverse<u32>>) {
+        for k in 3 * face..3 * face + 3 {
+            let k = k.min(self.table.twin(k));
+            if k > h { due.push(Reverse(k)) } else { next.push(Reverse(k)) }
+        }
     }
 
     fn is_too_long(&self, h: u32, wanted: &(dyn Fn(DVec3) -> f64 + Sync), least: f64) -> bool {
@@ -97,12 +139,13 @@ impl Refined {
         length >= self.length_squared(super::table::next(h)) && length >= self.length_squared(super::table::prev(h))
     }
 
-    fn split<M: Adjacency>(&mut self, mesh: &M, h: u32) {
+    /// Splits an edge in the middle; false where rounding leaves no middle.
+    fn split<M: Adjacency>(&mut self, mesh: &M, h: u32) -> bool {
         let t = self.table.twin(h);
         let (a, b, parent) = (self.table.tail(h) as usize, self.table.head(h) as usize, self.parents[h as usize / 3]);
         let middle = 0.5 * (self.points[a] + self.points[b]);
         if middle == self.points[a] || middle == self.points[b] {
-            return;
+            return false;
         }
         let corners = mesh.corners(FaceId(parent));
         let [u, v] = [a, b].map(|v| self.origins[v].barycentric(corners).unwrap_or([1.0, 0.0, 0.0]));
@@ -121,10 +164,11 @@ impl Refined {
             self.parents.push(self.parents[side as usize / 3]);
             self.urged[side as usize / 3] = false;
             self.urged.push(false);
-            self.settled.extend([false; 3]);
+            self.length.extend([Length::Unknown; 3]);
             let changed = 3 * (side / 3) as usize;
-            self.settled[changed..changed + 3].fill(false);
+            self.length[changed..changed + 3].fill(Length::Unknown);
         }
+        true
     }
 
     fn pieces(&self, whole: usize) -> Vec<FaceOrigin> {

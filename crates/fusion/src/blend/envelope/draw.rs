@@ -5,13 +5,16 @@ use super::flip::flip_needles;
 use crate::blend::field::piece::{CutOut, split_chords};
 use crate::blend::trouble::Trouble;
 use glam::DVec3;
-use mesh_core::{Connected, TriMesh, VertexId, Watch};
+use mesh_core::{Connected, TriMesh, VertexId, Watch, area};
 use rayon::prelude::*;
 use remesh::{Frozen, Projection, Sizing, graded_sizes};
 use std::collections::BTreeSet;
 
-/// Rounds of each remeshing of the piece, after which it is drawn: the cut-out piece has needles.
-const ROUNDS: [usize; 3] = [10, 5, 5];
+/// Rounds of each remeshing of the piece, and how far its vertices may then be drawn, in radii: the cut-out piece has needles,
+/// and an edge of 35 degrees is 2.3 radii away from its ball.
+const PASSES: [(usize, f64); 3] = [(10, 3.0), (5, 1.0), (5, 0.5)];
+/// The drawn piece is smaller than what was cut out; where it is larger than this many times, vertices went astray.
+const WIDEST: f64 = 1.2;
 /// So many vertices, or such a share, may be without a ball: the search for one is local. They follow their neighbours.
 const FEW: usize = 3;
 const SHARE: usize = 50;
@@ -31,11 +34,16 @@ pub(super) fn draw(
 ) -> Result<TriMesh, Trouble> {
     let mut mesh = piece.mesh.clone();
     flip_needles(&mut mesh);
-    for rounds in ROUNDS {
+    let most = WIDEST * area(&piece.mesh);
+    for (rounds, reach) in PASSES {
         mesh = even_out(mesh, edge, rounds, watch)?;
         split_chords(&mut mesh, piece.rim.len(), taken, 0.5 * edge);
         let inner = &mesh.positions[piece.rim.len()..];
-        let found: Vec<Option<DVec3>> = inner.par_iter().with_min_len(16).map(|&p| ground.envelope(p, r)).collect();
+        let found: Vec<Option<DVec3>> = inner
+            .par_iter()
+            .with_min_len(16)
+            .map(|&p| ground.envelope(p, r).filter(|q| q.distance(p) < reach * r))
+            .collect();
         let lost: Vec<DVec3> = inner.iter().zip(&found).filter(|f| f.1.is_none()).map(|f| *f.0).collect();
         if lost.len() > FEW.max(inner.len() / SHARE) {
             return Err(Trouble::at("no ball of this size fits", lost));
@@ -46,6 +54,12 @@ pub(super) fn draw(
             *at = found.unwrap_or(*at);
         }
         even(&mut mesh, &missing);
+        if area(&mesh) > most {
+            return Err(Trouble::at(
+                "no ball of this size fits",
+                mesh.positions.first().copied().into_iter().collect(),
+            ));
+        }
     }
     Ok(mesh)
 }

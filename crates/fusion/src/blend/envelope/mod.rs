@@ -21,10 +21,10 @@ mod mark;
 mod outline;
 mod patches;
 
-use super::field::piece::{cut_out, kept_chords, put_back};
+use super::field::piece::{self, cut_out, kept_chords, put_back};
 use super::linkage::Opened;
 use super::sew::sew;
-use super::sketch::Drawing;
+use super::sketch::{Drawing, Page};
 use super::trouble::Trouble;
 use super::{Blended, Params, Radii, Surface, check};
 use centre::Ground;
@@ -44,6 +44,9 @@ use tri_intersect::{EmbedError, EmbedParams, Embedded, SurfaceCurve, embed};
 
 /// Length of the piece's edges at the usual tolerance, in radii: chords of a ball that stand off by 1.1% of its radius.
 const EDGE: f64 = 0.3;
+/// Shares of that length which are tried where the blend then meets itself in no more than a few places.
+const FINER: [f64; 2] = [1.0, 0.6];
+const FEW: usize = 32;
 /// Levels of the scalar at which outlines are drawn, in radii, in the order in which they are tried. The first counts a face
 /// that a ball touches along its whole middle as consumed.
 const LEVELS: [f64; 3] = [1e-6, 4e-3, -4e-3];
@@ -89,10 +92,38 @@ pub(super) fn blend(
     let cut = Connected::new(&embedded.mesh).map_err(Trouble::not_manifold("the cut mesh is not a manifold"))?;
     let removed = enclosed(mesh, curves, &cut, &embedded)?;
     let pieces = cut_out(&embedded.mesh, &removed, &embedded.curves).pieces();
+    let cut_out = CutOut { cut: &cut, removed: &removed, pieces: &pieces, embedded: &embedded };
     let edge = EDGE * r * (params.tolerance.clamp(1e-6, 0.5) / 0.005).sqrt().min(1.0);
+    let mut refusal = Trouble::at("the blend cannot be tessellated", vec![]);
+    for share in FINER {
+        match tessellated(&cut_out, &ground, r, share * edge, page, watch) {
+            Err(Trouble::Places { what, places }) if places.len() <= FEW => refusal = Trouble::at(what, places),
+            other => return other,
+        }
+    }
+    Err(refusal)
+}
+
+/// The mesh with everything cut, and what of it is to be drawn anew.
+struct CutOut<'a> {
+    cut: &'a Connected<&'a TriMesh>,
+    removed: &'a FaceMap<bool>,
+    pieces: &'a [piece::CutOut],
+    embedded: &'a Embedded,
+}
+
+/// The pieces drawn with edges about `edge` long, put in and checked.
+fn tessellated(
+    CutOut { cut, removed, pieces, embedded }: &CutOut<'_>,
+    ground: &Ground<'_>,
+    r: f64,
+    edge: f64,
+    page: Page<'_>,
+    watch: &Watch,
+) -> Result<Blended, Trouble> {
     let drawn: Vec<TriMesh> = pieces
         .par_iter()
-        .map(|piece| draw::draw(piece, &ground, r, edge, &kept_chords(&cut, &removed, &piece.rim), watch))
+        .map(|piece| draw::draw(piece, ground, r, edge, &kept_chords(cut, removed, &piece.rim), watch))
         .collect::<Result<_, _>>()?;
     page.draw_field("surface", || Drawing::Mesh(TriMesh::merged(&drawn)));
     let mut first_new = embedded.mesh.vertex_count() as u32;
@@ -101,8 +132,9 @@ pub(super) fn blend(
         back.push(put_back(&piece.rim, drawn, first_new));
         first_new += (drawn.positions.len() - piece.rim.len()) as u32;
     }
-    let opened = Opened { linkages: vec![], joints: vec![], stops: vec![], loops: vec![], embedded };
-    let sewn = sew(&opened, &removed, &back);
+    let opened =
+        Opened { linkages: vec![], joints: vec![], stops: vec![], loops: vec![], embedded: (*embedded).clone() };
+    let sewn = sew(&opened, removed, &back);
     check(&sewn, watch)?;
     Ok(Blended { fields: back.len(), ..Blended::new(sewn.mesh, sewn.origins, sewn.first_new_face) })
 }
