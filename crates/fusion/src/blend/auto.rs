@@ -4,7 +4,7 @@ use super::corner::closest_between;
 use super::trouble::Trouble;
 use super::{
     Blended, CurveBlend, Error, LeftSharp, Method, Overlap, Params, ROUNDS, Surface, attempt, envelope, explained,
-    field,
+    field, measure,
 };
 use glam::DVec3;
 use mesh_core::{
@@ -32,6 +32,71 @@ pub(crate) fn blend(
     if curves.is_empty() {
         return Err(Error::NoCurves);
     }
+    if params.surface == Surface::Auto && params.overlap == Overlap::Full && field::serves(curves, params) {
+        return seams(mesh, curves, params, watch);
+    }
+    by_stages(mesh, curves, params, watch)
+}
+
+/// A sweep with a smaller ball here and there is good enough if this share of its length has the full one.
+const GOOD: f64 = 0.95;
+
+/// Blends closed seams: swept with the full ball; where that fails, swept with a smaller one here and there or drawn as a
+/// field, whichever has the full ball along more of the seams, as measured on the result.
+fn seams(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params, watch: &Watch) -> Result<Blended, Error> {
+    let taken = |made: Blended| {
+        let mut so_far = SoFar::new(mesh, curves, params.radius);
+        so_far.add(made, |_| true);
+        so_far.blended
+    };
+    let shrinking = Params { overlap: Overlap::Shrink, ..params.clone() };
+    let mut swept = None;
+    for how in [params, &shrinking] {
+        match attempt(mesh, curves, how, ROUNDS, watch) {
+            Ok(made) if how.overlap == Overlap::Full => return Ok(taken(made)),
+            Ok(made) => {
+                let share = full_share(mesh, curves, &made, params.radius);
+                if share >= GOOD {
+                    return Ok(taken(made));
+                }
+                swept = Some((share, made));
+            }
+            Err(Trouble::Cancelled(c)) => return Err(c.into()),
+            Err(_) => {}
+        }
+    }
+    let field = Params { surface: Surface::Field, ..shrinking };
+    let drawn = match by_stages(mesh, curves, &field, watch) {
+        Err(Error::Cancelled(c)) => return Err(c.into()),
+        other => other.ok(),
+    };
+    match (swept, drawn) {
+        (Some((share, _)), Some(drawn)) if share < full_share(mesh, curves, &drawn, params.radius) => Ok(drawn),
+        (Some((_, made)), _) => Ok(taken(made)),
+        (None, Some(drawn)) => Ok(drawn),
+        (None, None) => {
+            let marked = vec![true; curves.len()];
+            by_network(SoFar::new(mesh, curves, params.radius), &marked, params, watch)
+        }
+    }
+}
+
+/// Share of the curves' length whose blend is on balls of the radius asked for.
+fn full_share(mesh: &Connected<TriMesh>, curves: &[BlendCurve], blended: &Blended, radius: f64) -> f64 {
+    let asked: Vec<_> = curves.iter().map(|c| measure::Curve { halfedges: &c.halfedges, radius }).collect();
+    let (found, _) = measure::measure(mesh, &asked, blended);
+    let lengths = curves.iter().map(|c| c.length(mesh));
+    let full = found.iter().zip(lengths.clone()).map(|(m, l)| l * m.blended_share * m.full_share.unwrap_or(0.0));
+    full.sum::<f64>() / lengths.sum::<f64>().max(f64::MIN_POSITIVE)
+}
+
+/// Sweeps all curves, or with [`Surface::Field`] none; what fails is handed over.
+fn by_stages(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    params: &Params,
+    watch: &Watch,
+) -> Result<Blended, Error> {
     let as_asked = params.surface == Surface::Field;
     let mut so_far = SoFar::new(mesh, curves, params.radius);
     let mut handed_over = vec![as_asked; curves.len()];
@@ -91,7 +156,10 @@ fn by_network(mut so_far: SoFar<'_>, marked: &[bool], params: &Params, watch: &W
         // The envelope of a whole scan would fill its dents, too.
         let closed = group.iter().zip(curves).all(|(own, curve)| !own || curve.closed);
         let mut made = Err(Trouble::at("the blend fails as a field", vec![]));
-        if !(closed && field::serves(curves, params)) {
+        let own: Vec<&BlendCurve> = curves.iter().zip(&group).filter(|c| *c.1).map(|c| c.0).collect();
+        if let Some(at) = envelope::sharp_end(mesh, &own, &envelope::halfedges_of(mesh, curves)) {
+            made = Err(Trouble::at("the curve ends at edges that stay sharp", vec![at]));
+        } else if !(closed && field::serves(curves, params)) {
             // At corners of both kinds the order matters little; where one fails, the other may not.
             for first in [first, first.opposite()] {
                 so_far = before.clone();
@@ -112,9 +180,9 @@ fn by_network(mut so_far: SoFar<'_>, marked: &[bool], params: &Params, watch: &W
             return explained(mesh, curves, params, failure, watch);
         }
         let mut left = None;
-        for share in SHARES {
+        for (share, omissions) in SHARES {
             let smaller = Params { radius: share * params.radius, overlap: Overlap::Shrink, ..params.clone() };
-            left = swept_in_part(&mut so_far, &group, &smaller, params.radius, watch)?;
+            left = swept_in_part(&mut so_far, &group, &smaller, (params.radius, omissions), watch)?;
             if left.is_some() {
                 break;
             }
@@ -168,25 +236,23 @@ fn by_envelope(
 
 /// Networks longer than this, in radii, are not tried in the other order.
 const SHORT: f64 = 300.0;
-/// Shares of the radius at which a network is swept where the envelope of the full ball fails.
-const SHARES: [f64; 3] = [1.0, 0.5, 0.25];
+/// Shares of the radius at which a network is swept where the envelope of the full ball fails, and how often curves are left
+/// out at each.
+const SHARES: [(f64, usize); 3] = [(1.0, 4), (0.5, 1), (0.25, 1)];
 /// A curve that stays sharp, a place where the ball fails and why.
 type Omitted = (usize, DVec3, &'static str);
-/// How often curves are left out of a sweep that fails, at most.
-const OMISSIONS: usize = 4;
-
 /// Sweeps a network with a ball that is made smaller where it does not fit; curves near places where that fails are left
 /// out. Gives for each of these a place and what failed there; `None` if nothing could be swept.
 fn swept_in_part(
     so_far: &mut SoFar<'_>,
     group: &[bool],
     params: &Params,
-    full: f64,
+    (full, omissions): (f64, usize),
     watch: &Watch,
 ) -> Result<Option<Vec<Omitted>>, Error> {
     let (mesh, curves) = (so_far.input, so_far.all);
     let (mut kept, mut left) = (group.to_vec(), vec![]);
-    for _ in 0..=OMISSIONS {
+    for _ in 0..=omissions {
         so_far.connect()?;
         if !kept.contains(&true) {
             break;

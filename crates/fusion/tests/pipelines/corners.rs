@@ -233,23 +233,16 @@ fn needles_beside_an_edge_are_rolled_on() {
     }
 }
 
-/// The unit cube's two opposite edges of one face with a ball of half its side: the face is consumed whole, and where the
-/// balls of both edges meet the result is half a cylinder.
+/// A plate as thick as the ball: its rim is consumed whole, and the corners of top and bottom meet.
 #[test]
-fn a_face_as_wide_as_two_balls_is_consumed() {
-    let mesh = Connected::new(shapes::cuboid(DVec3::ONE)).unwrap();
-    let along_y_on_top = |c: &BlendCurve| {
-        let [a, b] = mesh.ends(c.halfedges[0]);
-        (a - b).normalize().y.abs() > 0.9 && a.z > 0.0
-    };
-    let chosen: Vec<BlendCurve> = curves(&mesh).into_iter().filter(along_y_on_top).collect();
-    assert_eq!(chosen.len(), 2);
-    let done = blend(&mesh, &chosen, &Params::new(0.5), &Watch::default()).unwrap();
+fn a_plate_as_thick_as_the_ball_has_a_round_rim() {
+    let size = DVec3::new(1.0, 0.8, 0.2);
+    let mesh = Connected::new(shapes::cuboid(size)).unwrap();
+    let r = 0.1;
+    let done = blend(&mesh, &curves(&mesh), &Params::new(r), &Watch::default()).unwrap_or_else(|e| panic!("{e}"));
     assert!(tri_intersect::self_intersections(&done.mesh, &Watch::default()).unwrap().is_empty());
-    // Half a cylinder on half a cube.
-    let exact = 0.5 + 0.5 * PI * 0.25;
-    let off = (volume(&done.mesh) - exact).abs();
-    assert!(off < 0.01, "{off}");
+    let off = done.mesh.positions.iter().map(|&p| from_rounded_box(p, 0.5 * size, r).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-3 * r && done.curves.iter().all(|c| c.radius == r), "{off} {:?}", done.curves);
 }
 
 /// A box with a hole through its end faces: both ends of a rounded edge stop at faces whose triangles all lead to the hole.
@@ -267,7 +260,7 @@ fn an_edge_stops_cleanly_at_faces_with_holes() {
     };
     let chosen: Vec<BlendCurve> = curves(&mesh).into_iter().filter(upright).collect();
     assert_eq!(chosen.len(), 1);
-    let done = rounded(&mesh, &chosen, &Params::new(1.0));
+    let done = rounded(&mesh, &chosen, &Params { tolerance: 1e-4, ..Params::new(1.0) });
     let connected = Connected::new(&done.mesh).unwrap();
     let sharpest = connected
         .halfedge_ids()
@@ -278,7 +271,7 @@ fn an_edge_stops_cleanly_at_faces_with_holes() {
     // What a quarter of a cylinder takes from the box' edge, to the chords' accuracy.
     let taken = volume(&mesh) - volume(&done.mesh);
     let exact = 6.0 * (1.0 - 0.25 * PI);
-    assert!((taken / exact - 1.0).abs() < 0.02, "{taken} beside {exact}");
+    assert!((taken / exact - 1.0).abs() < 3e-3, "{taken} beside {exact}");
 }
 
 /// An open network with corners closer together than their ball needs: nothing is refused, and what is left sharp is told.

@@ -26,8 +26,9 @@ use super::linkage::Opened;
 use super::sew::sew;
 use super::sketch::{Drawing, Page};
 use super::trouble::Trouble;
-use super::{Blended, Params, Radii, Surface, check};
+use super::{Blended, Overlap, Params, Radii, Surface, check};
 use centre::Ground;
+use glam::DVec3;
 use mark::Fine;
 use mesh_core::{
     Adjacency, Connected, FaceId, FaceMap, Faces, HalfedgeId, Positions, TriMesh, VertexId, VertexOrigin, Watch,
@@ -56,10 +57,38 @@ const SNAP: f64 = 2e-3;
 /// Whether the envelope may take the place of a sweep.
 pub(super) fn serves(params: &Params) -> bool {
     params.surface == Surface::Auto
+        && params.overlap != Overlap::Error
         && matches!(params.profile, Profile::Arc)
         && params.profile_at.is_empty()
         && params.reach.is_none()
         && params.radii == Radii::default()
+}
+
+/// The first end of a curve at which a crease stays sharp: there the blend has to stop at the surface ahead, which a ball that rolls on
+/// all of the surface would round, too. `chosen` are the halfedges of all curves, both of each edge.
+pub(super) fn sharp_end(mesh: &Connected<TriMesh>, curves: &[&BlendCurve], chosen: &[bool]) -> Option<DVec3> {
+    let patches = Patches::new(mesh, chosen);
+    let ends = curves.iter().filter(|c| !c.closed).flat_map(|c| {
+        let (first, last) = (c.halfedges.first(), c.halfedges.last());
+        first.map(|&h| mesh.tail(h)).into_iter().chain(last.map(|&h| mesh.head(h)))
+    });
+    let stays = |v: &VertexId| mesh.ring(*v).any(|h| patches.is_wall(h) && !chosen[h.index()]);
+    ends.into_iter().find(stays).map(|v| mesh.position(v))
+}
+
+/// Both halfedges of every edge of some curves.
+pub(super) fn halfedges_of<'a>(
+    mesh: &Connected<TriMesh>,
+    curves: impl IntoIterator<Item = &'a BlendCurve>,
+) -> Vec<bool> {
+    let mut chosen = vec![false; 3 * mesh.face_count()];
+    for h in curves.into_iter().flat_map(|c| &c.halfedges) {
+        chosen[h.index()] = true;
+        if let Some(t) = mesh.twin(*h) {
+            chosen[t.index()] = true;
+        }
+    }
+    chosen
 }
 
 /// Blends `curves`, all of one convexity, by the envelope of a ball of the radius asked for.
@@ -71,13 +100,7 @@ pub(super) fn blend(
     watch: &Watch,
 ) -> Result<Blended, Trouble> {
     let r = params.radius;
-    let mut chosen = vec![false; 3 * mesh.face_count()];
-    for h in curves.iter().flat_map(|c| &c.halfedges) {
-        chosen[h.index()] = true;
-        if let Some(t) = mesh.twin(*h) {
-            chosen[t.index()] = true;
-        }
-    }
+    let chosen = halfedges_of(mesh, curves);
     let tree = TriBvh::build(mesh).map_err(|e| Trouble::Spine(e.into()))?;
     let patches = Patches::new(mesh, &chosen);
     let sign = if convexity == Convexity::Concave { 1.0 } else { -1.0 };
