@@ -145,7 +145,7 @@ fn the_offset_spine_is_near_and_the_contact_spine_exact() {
 fn a_ball_that_does_not_fit_shrinks_or_stops() {
     let bench = bench();
     let line = "union a.off b.off -o out.off --radius 0.3 --report r.json";
-    let run = bench.run(line).expect(0);
+    let run = bench.run(&format!("{line} --overlap shrink")).expect(0);
     let report = json(&bench.read("r.json"));
     let figure = |name: &str| report["figures"][name].as_f64().unwrap();
     let warnings: Vec<&str> = report["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();
@@ -190,7 +190,7 @@ fn many_warnings_of_one_kind_are_counted() {
     };
     bench.file("row.off", &row([0.0; 3]));
     bench.file("beside.off", &row([0.4, 0.3, 0.2]));
-    let line = "union row.off beside.off -o out.off --radius 0.3 --report r.json";
+    let line = "union row.off beside.off -o out.off --radius 0.3 --overlap shrink --report r.json";
     let run = bench.run(line).expect(0);
     let report = json(&bench.read("r.json"));
     let warnings: Vec<&str> = report["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();

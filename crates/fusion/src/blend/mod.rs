@@ -7,6 +7,8 @@
 //! | `vicinity.rs` | the part of a large mesh that the blend is made on |
 //! | `curve_blend.rs`, `measure.rs` | what each curve was blended by; the ball error of the result
 //! | `auto.rs` | which curves are swept and which are blended as a field |
+//! | `networks.rs` | networks on which a plain sweep fails |
+//! | `so_far.rs` | a mesh on its way through several blends |
 //! | `limit.rs`, `width.rs` | the largest radius that fits; how wide the sides of a curve are |
 //! | `radii.rs`, `profiles.rs` | how radius and cross-section vary along a curve, and the radius between its sides |
 //! | `mends.rs` | what has been done so far to make the blend fit |
@@ -42,6 +44,7 @@ mod linkage;
 pub(crate) mod measure;
 mod mends;
 mod network;
+mod networks;
 mod params;
 mod plate;
 mod profiles;
@@ -49,6 +52,7 @@ mod radii;
 mod rolling;
 mod sew;
 mod sketch;
+mod so_far;
 mod stretch;
 mod strip;
 mod trouble;

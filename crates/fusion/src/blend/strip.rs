@@ -97,7 +97,7 @@ pub(crate) fn sweep(
         let stops = [i, next].iter().any(|&k| matches!(stretch.station(k), Err(Ending::Stop(_))));
         let cell = Cell {
             columns,
-            lengths: stops.then(|| columns.map(|c| shares(c, &position))),
+            lengths: stops.then(|| columns.map(|c| shares(c, position))),
             spans: [0, 1].map(|s| linkages[s].span(i)),
             at: position,
             front,

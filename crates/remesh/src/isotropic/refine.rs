@@ -96,8 +96,9 @@ impl Refined {
             if stands == [true, true] {
                 let appended = self.table.halfedge_count() / 3;
                 if self.split(mesh, h) {
-                    let changed = [h / 3, t / 3, appended, appended + 1];
-                    changed.into_iter().for_each(|f| self.look_at(f, h, &mut due, &mut next));
+                    for f in [h / 3, t / 3, appended, appended + 1] {
+                        self.look_at(f, h, &mut due, &mut next);
+                    }
                     done = true;
                 }
             } else {

@@ -133,9 +133,9 @@ impl Outline<'_> {
             };
             let next = [t, value(t)];
             if (next[1] < 0.0) == (low[1] < 0.0) {
-                low = next
+                low = next;
             } else {
-                high = next
+                high = next;
             }
             if next[1].abs() < 1e-9 {
                 return t.clamp(ASIDE, 1.0 - ASIDE);

@@ -139,7 +139,9 @@ fn facets(mesh: &Connected<TriMesh>, normals: &FaceMap<DVec3>, facet: &FaceMap<u
             all[*facet as usize].normal = normals[f];
         }
     }
-    all.iter_mut().for_each(|f| f.normal = f.normal.normalize_or_zero());
+    for f in &mut all {
+        f.normal = f.normal.normalize_or_zero();
+    }
     let width = |h: HalfedgeId| {
         let [a, b] = mesh.ends(h);
         let along = (b - a).normalize_or_zero();

@@ -319,7 +319,9 @@ fn leave_sharp(cut: &Connected<&TriMesh>, removed: &mut FaceMap<bool>, sharp: &[
             at += 1;
         }
         if !bounded || piece.iter().any(|&f| cut.triangle(f).iter().any(|p| sharp.contains(p))) {
-            piece.into_iter().for_each(|f| removed[f] = false);
+            for f in piece {
+                removed[f] = false;
+            }
         }
     }
 }

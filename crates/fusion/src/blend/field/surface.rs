@@ -164,7 +164,9 @@ fn seat(mesh: &Connected<&TriMesh>, sides: &Sides<'_>, radius: &RadiusField, mov
         if bent.is_empty() {
             break;
         }
-        bent.iter().for_each(|v| taken[v.index()] = false);
+        for v in &bent {
+            taken[v.index()] = false;
+        }
     }
     for v in (0..x.len()).filter(|&v| taken[v]) {
         x[v] += steps[v];
