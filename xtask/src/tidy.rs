@@ -10,83 +10,8 @@ const MOST_LINES: usize = 500;
 /// A longer source file is listed, as a hint to split it.
 const MANY_LINES: usize = 400;
 
-/// Which crates each crate may depend on, beside [`OPEN_TO_ALL`]. The map of docs/architecture.md in full.
-const ARROWS: &[(&str, &[&str])] = &[
-    ("mesh-core", &[]),
-    ("mesh-query", &["mesh-core", "obvhs"]),
-    ("mesh-io", &["mesh-core", "flate2", "gltf", "quick-xml", "robust", "serde_json", "tobj", "zip"]),
-    ("tri-intersect", &["mesh-core", "mesh-query", "robust", "spade"]),
-    ("profile-nurbs", &["nalgebra"]),
-    ("spine", &["mesh-core", "mesh-query", "tri-intersect"]),
-    ("param-conformal", &["mesh-core", "faer"]),
-    ("rbf-solve", &["faer"]),
-    ("lmc-tessellate", &["mesh-core", "mesh-query"]),
-    ("remesh", &["mesh-core", "mesh-query", "faer"]),
-    ("detail-transfer", &["mesh-core", "mesh-query", "param-conformal", "remesh", "faer"]),
-    ("edge-cluster", &["mesh-core", "profile-nurbs", "spade"]),
-    ("render", &["mesh-core", "mesh-query", "image"]),
-    (
-        "fusion",
-        &[
-            "mesh-core",
-            "mesh-query",
-            "mesh-io",
-            "tri-intersect",
-            "profile-nurbs",
-            "spine",
-            "param-conformal",
-            "rbf-solve",
-            "lmc-tessellate",
-            "remesh",
-            "detail-transfer",
-            "edge-cluster",
-            "render",
-            "mimalloc",
-            "serde",
-            "serde_json",
-            "toml",
-        ],
-    ),
-    (
-        "fusion-cli",
-        &[
-            "fusion",
-            "mesh-io",
-            "anstyle",
-            "clap",
-            "clap_complete",
-            "clap_mangen",
-            "ctrlc",
-            "indicatif",
-            "mimalloc",
-            "serde_json",
-            "tempfile",
-        ],
-    ),
-    (
-        "xtask",
-        &[
-            "fusion",
-            "lmc-tessellate",
-            "mesh-core",
-            "mesh-io",
-            "mesh-query",
-            "param-conformal",
-            "tri-intersect",
-            "clap",
-            "either",
-            "getrandom",
-            "libc",
-            "serde",
-            "serde_json",
-            "tempfile",
-            "toml",
-        ],
-    ),
-];
-const OPEN_TO_ALL: &[&str] = &["glam", "rayon", "thiserror"];
-/// Open to the tests and benchmarks of every crate.
-const OPEN_TO_TESTS: &[&str] = &["criterion", "mesh-core", "proptest", "serde_json", "tempfile"];
+/// Where the table of crates stands.
+const TABLE: &str = "docs/architecture.md";
 
 /// Runs every check and lists all that is wrong.
 pub fn run() -> Result<(), Fault> {
@@ -132,27 +57,56 @@ pub fn run() -> Result<(), Fault> {
 
 /// Every dependency that is not in the table.
 fn arrows() -> Result<Vec<String>, Fault> {
+    let table = Table::of(&fs::read_to_string(root().join(TABLE))?);
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--no-deps", "--format-version", "1"])
         .current_dir(root())
         .output()?;
     let metadata: Value = serde_json::from_slice(&output.stdout)?;
+    let packages = || metadata["packages"].as_array().into_iter().flatten();
     let mut faults = vec![];
-    for package in metadata["packages"].as_array().into_iter().flatten() {
+    for package in packages() {
         let name = package["name"].as_str().unwrap_or_default();
-        let Some((_, allowed)) = ARROWS.iter().find(|(n, _)| *n == name) else {
-            faults.push(format!("{name}: is not in the table of crates (xtask/src/tidy.rs)"));
-            continue;
-        };
-        for dependency in package["dependencies"].as_array().into_iter().flatten() {
-            let other = dependency["name"].as_str().unwrap_or_default();
-            let for_tests = dependency["kind"] == "dev" && OPEN_TO_TESTS.contains(&other);
-            if !allowed.contains(&other) && !OPEN_TO_ALL.contains(&other) && !for_tests {
-                faults.push(format!("{name} -> {other}: this arrow is not in the table (xtask/src/tidy.rs)"));
-            }
-        }
+        let dependencies = package["dependencies"].as_array().into_iter().flatten();
+        let on = dependencies.map(|d| (d["name"].as_str().unwrap_or_default(), d["kind"] == "dev"));
+        faults.extend(table.faults(name, on));
     }
     Ok(faults)
+}
+
+/// The table of crates: what each may stand on.
+struct Table<'a> {
+    rows: Vec<(&'a str, Vec<&'a str>)>,
+    /// Open to every crate, and to the tests and benchmarks of every crate.
+    open: [Vec<&'a str>; 2],
+}
+
+impl<'a> Table<'a> {
+    /// Reads the rows that begin with a crate's name, and the two sentences about what is open to all.
+    fn of(page: &'a str) -> Self {
+        let names = |text: &'a str| text.split('`').skip(1).step_by(2).collect::<Vec<_>>();
+        let row = |line: &'a str| {
+            let mut cells = line.strip_prefix("| `")?.split('|');
+            Some((cells.next()?.trim().trim_end_matches('`'), names(cells.next()?)))
+        };
+        let after = |opening| page.lines().find_map(|line| line.strip_prefix(opening)).map(names).unwrap_or_default();
+        Self {
+            rows: page.lines().filter_map(row).collect(),
+            open: ["Open to every crate:", "Open to tests and benchmarks:"].map(after),
+        }
+    }
+
+    /// What a crate stands on, for tests or always, that its row does not name.
+    fn faults<'d>(&self, name: &str, on: impl Iterator<Item = (&'d str, bool)>) -> Vec<String> {
+        let Some((_, allowed)) = self.rows.iter().find(|(n, _)| *n == name) else {
+            return vec![format!("{name}: is not in the table of {TABLE}")];
+        };
+        let listed = |other: &str, for_tests: bool| {
+            allowed.contains(&other) || self.open[0].contains(&other) || for_tests && self.open[1].contains(&other)
+        };
+        let unlisted = on.filter(|&(other, for_tests)| !listed(other, for_tests));
+        unlisted.map(|(other, _)| format!("{name} -> {other}: this arrow is not in the table of {TABLE}")).collect()
+    }
 }
 
 fn lengths(name: &str, text: &str, faults: &mut Vec<String>) {
@@ -198,5 +152,31 @@ fn citations(name: &str, text: &str, bibliography: &str, faults: &mut Vec<String
                 faults.push(format!("{name}:{}: [{key}] is not in docs/bibliography.md", i + 1));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arrow_that_the_page_does_not_list_is_a_fault() {
+        let page = "Open to every crate: `glam`.\nOpen to tests and benchmarks: `proptest`.\n| `a` | | x |\n| `b` | `a`; `zip` | x |\n";
+        let table = Table::of(page);
+        assert!(
+            table
+                .faults("b", [("a", false), ("zip", false), ("glam", false), ("proptest", true)].into_iter())
+                .is_empty()
+        );
+        assert_eq!(table.faults("a", [("b", false), ("proptest", false)].into_iter()).len(), 2);
+        assert_eq!(table.faults("c", std::iter::empty()).len(), 1);
+    }
+
+    #[test]
+    fn the_page_lists_every_crate() {
+        let page = fs::read_to_string(root().join(TABLE)).unwrap();
+        let table = Table::of(&page);
+        assert!(table.rows.iter().any(|(name, on)| *name == "rolling-blend" && on.contains(&"spine")));
+        assert!(table.open.iter().all(|open| !open.is_empty()));
     }
 }

@@ -121,7 +121,7 @@ impl Rolling {
     pub fn keep_drawings<T>(&self, sketch: &Sketch, result: Result<T, Failure>) -> Result<T, Failure> {
         let Some(folder) = &self.debug_geometry else { return result };
         let mut outputs = Outputs::default();
-        for (name, bytes) in sketch.files() {
+        for (name, bytes) in fusion::drawings_to_files(sketch) {
             outputs.add(folder.join(name), bytes);
         }
         let written = outputs.commit_after(|| Ok(()));

@@ -1,7 +1,7 @@
 //! Which curves of a mesh are blended: by number, by place, by file, by the seams of an earlier boolean, and by filters.
 
 use crate::diagnostic::Diagnostic;
-use crate::features::{self, Convexity, FeatureCurve, feature_curves};
+use crate::features::{self, Convexity, FeatureCurve, feature_curves, nearest};
 use crate::picks::{self, Picked};
 use crate::{Error, blend};
 use glam::DVec3;
@@ -261,25 +261,6 @@ impl<'a> Inside<'a> {
     }
 }
 
-/// The curve nearest to a point, the nearest point on it, and its distance; the lower index where two are as near.
-pub(crate) fn nearest<'a, M: Faces + Positions>(
-    mesh: &M,
-    curves: impl Iterator<Item = &'a [HalfedgeId]>,
-    point: DVec3,
-) -> Option<(usize, DVec3, f64)> {
-    let on_edge = |h: &HalfedgeId| {
-        let [a, b] = mesh.ends(*h);
-        let t = (point - a).dot(b - a) / (b - a).length_squared();
-        // A zero-length edge gives NaN; its start serves.
-        let place = if t.is_nan() { a } else { a + t.clamp(0.0, 1.0) * (b - a) };
-        (place, place.distance(point))
-    };
-    let on_curve = |(i, c): (usize, &[HalfedgeId])| {
-        c.iter().map(on_edge).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, distance)| (i, place, distance))
-    };
-    curves.enumerate().filter_map(on_curve).min_by(|a, b| a.2.total_cmp(&b.2))
-}
-
 /// The largest dihedral angle of the mesh, in degrees.
 fn sharpest(mesh: &Connected<TriMesh>) -> f64 {
     let all = (0..3 * mesh.face_count()).into_par_iter().map(HalfedgeId::from);
@@ -357,25 +338,6 @@ fn seams(mesh: &Connected<TriMesh>, parts: &[Option<u32>]) -> Result<Vec<BlendCu
     if curves.is_empty() { Err(Refusal::NoSeams.into()) } else { Ok(curves) }
 }
 
-/// A point within a feature curve, half-way along it: what names this curve and no other that it meets.
-pub fn point_within<M: Faces + Positions>(mesh: &M, curve: &FeatureCurve) -> DVec3 {
-    // A feature curve has an edge at least.
-    point_along(mesh, &curve.halfedges).unwrap_or_default()
-}
-
-/// The point half-way along a chain of halfedges.
-pub(crate) fn point_along<M: Faces + Positions>(mesh: &M, chain: &[HalfedgeId]) -> Option<DVec3> {
-    let mut left = 0.5 * chain.iter().map(|&h| mesh.edge_length(h)).sum::<f64>();
-    for &h in chain {
-        let ([a, b], length) = (mesh.ends(h), mesh.edge_length(h));
-        if left < length {
-            return Some(a.lerp(b, left / length));
-        }
-        left -= length;
-    }
-    chain.last().map(|&h| mesh.position(mesh.head(h)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -411,7 +373,7 @@ mod tests {
     fn points_within_name_their_curves() {
         let mesh = Connected::new(shapes::bracket(DVec3::new(2.0, 1.0, 1.5), 0.3, [3, 2, 2])).unwrap();
         for (id, curve) in feature_curves(&mesh, &features::Params::default()).iter().enumerate() {
-            let near = vec![point_within(&mesh, curve).into()];
+            let near = vec![features::point_within(&mesh, curve).into()];
             let found = chosen(&mesh, &Choice { near, ..Choice::default() }).unwrap();
             assert_eq!(found.iter().map(|c| c.id).collect::<Vec<_>>(), [id]);
         }

@@ -1,7 +1,8 @@
 //! Joins solids, and blends the seams where asked: from the contents of files to what a file will hold.
 
-use crate::choice::{FAR, Near, Source, nearest};
+use crate::choice::{FAR, Near, Source};
 use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::features::nearest;
 use crate::metrics::{Part, record};
 use crate::outcome::{Outcome, finish, surviving};
 use crate::{Counts, Error, Invalid, Report, blend, choice, extent};

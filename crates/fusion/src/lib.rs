@@ -18,7 +18,6 @@
 //! | `sharpen/` | fillets taken back to edges |
 //! | `compose/` | openings joined by one smooth surface |
 //! | `cut/` | cuts by planes and closed paths |
-//! | `blend/` | rolling-ball blends of curves |
 //! | `cluster/` | polyhedra rounded cluster by cluster |
 //! | `detail.rs` | geometry detail from region to region |
 //! | `recipe/` | whole models as TOML files |
@@ -26,26 +25,24 @@
 //! | `remeshing.rs`, `region.rs` | remeshing of a surface or a region of it; regions |
 //! | `repair.rs` | welding, orientation, taking apart |
 //! | `info.rs` | counts, measures and defects of one mesh |
-//! | `features.rs` | feature curves by dihedral angle |
-//! | `choice.rs` | which curves are blended
+//! | `choice.rs` | which curves are blended |
 //! | `picks.rs` | curves through picked points |
 //! | `attributes.rs`, `spread.rs` | attributes carried from inputs to the result, colours blended over new surfaces |
 //! | `profile_file.rs` | cross-sections read from files |
 //! | `palette.rs` | which colour shows what a face comes from |
 //! | `diagnostic.rs`, `metrics.rs` | what a job has to tell; what a blend did
-//! | `report.rs`, `origins_json.rs` | the account of a job, as files |
+//! | `report.rs`, `origins_json.rs`, `drawings.rs` | the account of a job, as files |
 
 mod attributes;
-pub mod blend;
 pub mod choice;
 pub mod cluster;
 pub mod compose;
 pub mod cut;
 pub mod detail;
 mod diagnostic;
+mod drawings;
 mod error;
 mod extent;
-pub mod features;
 mod info;
 pub mod join;
 mod metrics;
@@ -69,6 +66,7 @@ pub use choice::Choice;
 pub use cut::cut;
 pub use detail_transfer;
 pub use diagnostic::{Code, Diagnostic, Severity};
+pub use drawings::drawings_to_files;
 pub use error::Error;
 pub use info::{Defect, Info, Loop};
 pub use join::join;
@@ -85,6 +83,8 @@ pub use remeshing::remesh;
 pub use render;
 pub use repair::{Repair, repair};
 pub use report::{Counts, CurveReport, Quality, Report, Stage, Validity};
+pub use rolling_blend as blend;
+pub use rolling_blend::features;
 pub use round::round;
 pub use sharpen::sharpen;
 pub use spine::{OffsetParams, Solver};

@@ -1,7 +1,8 @@
 //! Rounds the feature curves of one mesh.
 
 use crate::blend::{self, Limit, ListedRadius};
-use crate::choice::{Choice, Chosen, choose, point_along};
+use crate::choice::{Choice, Chosen, choose};
+use crate::features::point_along;
 use crate::features::{self, FeatureCurve};
 use crate::metrics::{Part, record};
 use crate::outcome::{Inputs, Outcome, Promise, finish_as, surviving};

@@ -6,7 +6,7 @@ use crate::output::{check_writable, print};
 use crate::session::{Session, counts};
 use fusion::Report;
 use fusion::blend::ListedRadius;
-use fusion::choice::point_within;
+use fusion::features::point_within;
 use fusion::features::{Convexity, FeatureCurve, Params, feature_curves};
 use fusion::mesh_core::{Connected, Positions, TriMesh};
 use fusion::round::max_radius_of_each;

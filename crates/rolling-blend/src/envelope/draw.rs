@@ -1,0 +1,93 @@
+//! The cut-out piece of the surface, drawn onto the envelope.
+
+use super::centre::Ground;
+use super::flip::flip_needles;
+use crate::field::piece::{CutOut, split_chords};
+use crate::trouble::Trouble;
+use glam::DVec3;
+use mesh_core::{Connected, TriMesh, VertexId, Watch, area};
+use rayon::prelude::*;
+use remesh::{Frozen, Projection, Sizing, graded_sizes};
+use std::collections::BTreeSet;
+
+/// Rounds of each remeshing of the piece, and how far its vertices may then be drawn, in radii: the cut-out piece has needles,
+/// and an edge of 35 degrees is 2.3 radii away from its ball.
+const PASSES: [(usize, f64); 3] = [(10, 3.0), (5, 1.0), (5, 0.5)];
+/// The drawn piece is smaller than what was cut out; where it is larger than this many times, vertices went astray.
+const WIDEST: f64 = 1.2;
+/// So many vertices, or such a share, may be without a ball: the search for one is local. They follow their neighbours.
+const FEW: usize = 3;
+const SHARE: usize = 50;
+/// Change of edge length with distance from the outline.
+const SLOPE: f64 = 0.5;
+/// Least share of the edge length that is wanted beside short edges of the outline.
+const FINEST: f64 = 0.5;
+
+/// Draws the piece onto the envelope of balls of radius `r`, with edges about `edge` long. Its topology stays.
+pub(super) fn draw(
+    piece: &CutOut,
+    ground: &Ground<'_>,
+    r: f64,
+    edge: f64,
+    taken: &BTreeSet<[VertexId; 2]>,
+    watch: &Watch,
+) -> Result<TriMesh, Trouble> {
+    let mut mesh = piece.mesh.clone();
+    flip_needles(&mut mesh);
+    let most = WIDEST * area(&piece.mesh);
+    for (rounds, reach) in PASSES {
+        mesh = even_out(mesh, edge, rounds, watch)?;
+        split_chords(&mut mesh, piece.rim.len(), taken, 0.5 * edge);
+        let inner = &mesh.positions[piece.rim.len()..];
+        let found: Vec<Option<DVec3>> = inner
+            .par_iter()
+            .with_min_len(16)
+            .map(|&p| ground.envelope(p, r).filter(|q| q.distance(p) < reach * r))
+            .collect();
+        let lost: Vec<DVec3> = inner.iter().zip(&found).filter(|f| f.1.is_none()).map(|f| *f.0).collect();
+        if lost.len() > FEW.max(inner.len() / SHARE) {
+            return Err(Trouble::at("no ball of this size fits", lost));
+        }
+        let first = piece.rim.len();
+        let missing: Vec<usize> = (0..found.len()).filter(|&i| found[i].is_none()).map(|i| first + i).collect();
+        for (at, found) in mesh.positions[first..].iter_mut().zip(found) {
+            *at = found.unwrap_or(*at);
+        }
+        even(&mut mesh, &missing);
+        if area(&mesh) > most {
+            return Err(Trouble::at(
+                "no ball of this size fits",
+                mesh.positions.first().copied().into_iter().collect(),
+            ));
+        }
+    }
+    Ok(mesh)
+}
+
+/// Moves some vertices to the mean of their neighbours.
+fn even(mesh: &mut TriMesh, some: &[usize]) {
+    for &v in some {
+        let around =
+            mesh.faces.iter().filter(|f| f.iter().any(|w| w.index() == v)).flatten().filter(|w| w.index() != v);
+        let (sum, count) = around.fold((DVec3::ZERO, 0), |(s, n), w| (s + mesh.positions[w.index()], n + 1));
+        if count > 0 {
+            mesh.positions[v] = sum / f64::from(count);
+        }
+    }
+}
+
+fn even_out(mesh: TriMesh, edge: f64, rounds: usize, watch: &Watch) -> Result<TriMesh, Trouble> {
+    let at: Vec<DVec3> = mesh.positions.first().copied().into_iter().collect();
+    let failed = |_| Trouble::at("the blend cannot be tessellated", at.clone());
+    let connected =
+        Connected::new(mesh).map_err(|e| Trouble::at("the outlines touch", e.place.into_iter().collect()))?;
+    let mut sizes = graded_sizes(&connected, edge, SLOPE).map_err(failed)?;
+    // Outlines have short edges where they pass close by vertices; small triangles beside them would crumple.
+    sizes.as_mut_slice().iter_mut().for_each(|s| *s = s.max(FINEST * edge));
+    let how = remesh::Params { feature_angle: 180.0, rounds, ..remesh::Params::new(edge) };
+    match remesh::remesh(&connected, &Frozen::default(), Sizing::PerVertex(&sizes), &how, Projection::Input, watch) {
+        Ok(made) => Ok(made.mesh),
+        Err(remesh::Error::Cancelled(c)) => Err(Trouble::Cancelled(c)),
+        Err(e) => Err(failed(e)),
+    }
+}
