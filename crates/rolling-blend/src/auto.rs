@@ -7,6 +7,7 @@ use crate::params::{Overlap, Params, Surface};
 use crate::so_far::SoFar;
 use crate::stitch::{ROUNDS, attempt, explained};
 use crate::trouble::Trouble;
+use crate::zones::by_zones;
 use crate::{envelope, field, measure};
 use glam::DVec3;
 use mesh_core::{Connected, Faces, TriMesh, VertexId, Watch};
@@ -72,8 +73,8 @@ fn seams(mesh: &Connected<TriMesh>, curves: &[BlendCurve], params: &Params, watc
         (Some((_, made)), _) => Ok(taken(made)),
         (None, Some(drawn)) => Ok(drawn),
         (None, None) => {
-            let marked = vec![true; curves.len()];
-            by_network(SoFar::new(mesh, curves, params.radius), &marked, params, watch)
+            let (marked, failure) = (vec![true; curves.len()], Trouble::at("the blend fails as a field", vec![]));
+            by_network(SoFar::new(mesh, curves, params.radius), &marked, failure, params, watch)
         }
     }
 }
@@ -98,6 +99,7 @@ fn by_stages(
     let mut so_far = SoFar::new(mesh, curves, params.radius);
     let mut handed_over = vec![as_asked; curves.len()];
     let mut refusal = None;
+    let mut in_zones = params.overlap == Overlap::Full && envelope::serves(params) && !field::serves(curves, params);
     while handed_over.contains(&false) {
         let chosen: Vec<BlendCurve> = so_far.curves(|i| !handed_over[i])?;
         match attempt(mesh, &chosen, params, ROUNDS, watch) {
@@ -110,13 +112,24 @@ fn by_stages(
                 return explained(mesh, curves, params, trouble, watch);
             }
             Err(trouble) => {
+                if in_zones {
+                    in_zones = false;
+                    match by_zones(mesh, curves, trouble.clone(), params, watch) {
+                        Ok(made) => {
+                            so_far.add(made, |_| true);
+                            return Ok(so_far.blended);
+                        }
+                        Err(Trouble::Cancelled(c)) => return Err(c.into()),
+                        Err(_) => {}
+                    }
+                }
                 so_far.blended.fallbacks.extend(hand_over(mesh, curves, params, &trouble, &mut handed_over));
                 refusal = Some(trouble);
             }
         }
     }
-    if refusal.is_some() && !field::serves(curves, params) {
-        return by_network(so_far, &handed_over, params, watch);
+    if let Some(trouble) = refusal.take_if(|_| !field::serves(curves, params)) {
+        return by_network(so_far, &handed_over, trouble, params, watch);
     }
     loop {
         let failure = match add_fields(&mut so_far, &handed_over, params, watch) {
@@ -131,7 +144,7 @@ fn by_stages(
             let told = so_far.blended.fallbacks;
             so_far = SoFar::new(mesh, curves, params.radius);
             so_far.blended.fallbacks = told;
-            return by_network(so_far, &handed_over, params, watch);
+            return by_network(so_far, &handed_over, trouble, params, watch);
         }
         // Some of the curves alone may not tell two sides apart.
         handed_over.fill(true);

@@ -1,5 +1,6 @@
 //! Rails cut to length at the nodes: set back from corners, run out, or stopped at the surface ahead.
 
+use crate::cap::Cap;
 use crate::corner::{self, Corner, Setbacks};
 use crate::network::{Kind, Network, Node};
 use crate::profiles::Profiles;
@@ -8,7 +9,7 @@ use crate::strip::{Fineness, profile_points};
 use crate::trouble::Trouble;
 use glam::DVec3;
 use mesh_core::{
-    Adjacency, Connected, EdgeId, FaceId, Faces, HalfedgeId, Positions, SurfacePoint, TriMesh, face_normal,
+    Adjacency, Connected, EdgeId, FaceId, Faces, HalfedgeId, Positions, SurfacePoint, TriMesh, VertexId, face_normal,
 };
 use mesh_query::TriBvh;
 use spine::{BlendCurve, Rail, Sample};
@@ -37,6 +38,8 @@ pub(crate) struct Ends<'a> {
 const SMALLEST: f64 = 0.1;
 /// How far from the node the tip is, as a share of the base radius.
 const TIP_GAP: f64 = 0.05;
+/// How far a flat cap leans, as a share of the radius: by that much the last profile stands before the section.
+const LEANING: f64 = 0.05;
 /// Least cosine between the normals of the surface ahead and that of its part at the node.
 const GRAZING: f64 = 0.2;
 
@@ -57,6 +60,7 @@ impl Ends<'_> {
                     cuts
                 }
                 Kind::RunOut { .. } => vec![self.run_out(node, rails)?],
+                Kind::Cap(cap) => vec![self.cap(node, rails, cap)?],
                 Kind::Stop { creases, beyond } => {
                     let Some(cut) = self.stop(node, rails, creases, beyond)? else {
                         unstoppable.push(n);
@@ -159,6 +163,25 @@ impl Ends<'_> {
             SurfacePoint::Edge { halfedge, t: (TIP_GAP * full / length.max(f64::MIN_POSITIVE)).min(0.3) }
         });
         Ok(Cut { at: at as f64, last: None, ending: Ending::Tip(tip) })
+    }
+
+    /// Ends a rail in a cross-section that is an edge chain of the mesh already.
+    fn cap(&self, node: &Node, rails: &[Option<Rail>], cap: &Cap) -> Result<Cut, Trouble> {
+        let dart = node.darts[0];
+        let stuck = || Trouble::at("the ball cannot roll on", vec![self.mesh.position(node.vertex)]);
+        let rail = rails[dart.curve].as_ref().ok_or_else(stuck)?;
+        let view = Outward { rail, end: dart.end };
+        let before = if cap.is_flat() { LEANING * view.raw(0).radius } else { 0.5 * self.fineness.chord };
+        let at = view.advance(view.nearest(cap.centre), before);
+        let ball = view.sample(at);
+        let out = (view.sample(view.advance(at, before)).center - ball.center).normalize_or_zero();
+        let mut points: Vec<_> = cap.end.iter().map(|&v| (SurfacePoint::Vertex(v), out)).collect();
+        let left = ball.feet[0].point;
+        let distance = |v: Option<&VertexId>| v.map_or(f64::INFINITY, |&v| self.mesh.position(v).distance(left));
+        if distance(cap.end.last()) < distance(cap.end.first()) {
+            points.reverse();
+        }
+        Ok(Cut { at, last: None, ending: Ending::Stop(points) })
     }
 
     /// Ends a rail at the surface ahead of the node: the last profile is pushed on along the spine until it lies there.

@@ -23,6 +23,7 @@
 //! | `vicinity.rs` | the part of a large mesh that the blend is made on |
 //! | `curve_blend.rs`, `measure.rs` | what each curve was blended by; the ball error of the result |
 //! | `auto.rs` | which curves are swept and which are blended as a field |
+//! | `zones/` | the envelope around places where a sweep fails, strips everywhere else |
 //! | `networks.rs` | networks on which a plain sweep fails |
 //! | `so_far.rs` | a mesh on its way through several blends |
 //! | `limit.rs`, `width.rs` | the largest radius that fits; how wide the sides of a curve are |
@@ -34,6 +35,7 @@
 //! | `ending.rs` | rails cut to length there: set back, run out, or stopped at the surface ahead |
 //! | `corner.rs` | how far curves that meet are set back, and the ball that touches all sides |
 //! | `stretch.rs` | a rail cut to length |
+//! | `cap.rs` | cross-sections at which a strip ends because something else goes on |
 //! | `linkage.rs` | linkage curves on the surface, cut into the mesh |
 //! | `strip.rs` | the swept surface as triangles |
 //! | `fill.rs` | corner patches: their rims, and what they are tangent to |
@@ -47,6 +49,7 @@
 
 mod auto;
 mod blended;
+mod cap;
 mod corner;
 mod curve_blend;
 mod dwindle;
@@ -77,6 +80,7 @@ mod strip;
 mod trouble;
 mod vicinity;
 mod width;
+mod zones;
 
 pub use blended::Blended;
 pub use curve_blend::{CurveBlend, LeftSharp, Method};

@@ -89,6 +89,9 @@ const LISTED: [f64; 3] = [0.98, 0.49, 0.24];
 
 /// The largest radius for one curve of a list: what the width of its sides allows, or if `attempts` the first share of it with which
 /// the curve alone can be blended. `None` where the sides have no end or no share works.
+///
+/// # Errors
+/// Cancelled, or a mesh that no tree can be built of.
 pub fn listed_radius(
     mesh: &Connected<TriMesh>,
     curve: &BlendCurve,

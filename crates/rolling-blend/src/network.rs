@@ -1,5 +1,6 @@
 //! How blend curves hang together: the nodes at which open ones meet or end, and what is done there.
 
+use crate::cap::{Cap, Caps};
 use glam::DVec3;
 use mesh_core::{
     Adjacency, Connected, EdgeId, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, dihedral_angle,
@@ -46,6 +47,8 @@ pub(crate) enum Kind {
         /// Faces of the surface, next to the node.
         beyond: Vec<FaceId>,
     },
+    /// The only one ends at a cap.
+    Cap(Cap),
     /// The only one, or each of two unlike ones, narrows to nothing.
     RunOut {
         /// Edges on from the node, which part its left side from its right.
@@ -68,6 +71,8 @@ pub(crate) struct Network {
     pub nodes: Vec<Node>,
     /// For each curve, the nodes at its beginning and its end.
     pub ends: Vec<[Option<usize>; 2]>,
+    /// Edges that end the sides of curves with a cap.
+    border: Vec<EdgeId>,
 }
 
 /// Least turn of an edge at which a side of a blend ends, in degrees. Lower than that of features: a face that is not
@@ -78,21 +83,24 @@ const HEAD_ON: f64 = 0.25;
 
 impl Network {
     /// Finds the nodes of `curves`. A blend that stops or runs out looks `reach` ahead, in model units.
-    pub fn of(mesh: &Connected<TriMesh>, curves: &[BlendCurve], reach: f64) -> Self {
+    pub fn of(mesh: &Connected<TriMesh>, curves: &[BlendCurve], caps: &Caps, reach: f64) -> Self {
         let mut darts: BTreeMap<VertexId, Vec<Dart>> = BTreeMap::new();
         for (curve, chain) in curves.iter().enumerate().filter(|(_, c)| !c.closed) {
             let (Some(&first), Some(&last)) = (chain.halfedges.first(), chain.halfedges.last()) else { continue };
             darts.entry(mesh.tail(first)).or_default().push(Dart { curve, end: 0 });
             darts.entry(mesh.head(last)).or_default().push(Dart { curve, end: 1 });
         }
-        let mut network = Self { nodes: Vec::new(), ends: vec![[None; 2]; curves.len()] };
+        let mut network = Self { nodes: Vec::new(), ends: vec![[None; 2]; curves.len()], border: caps.border.clone() };
         for (vertex, mut darts) in darts {
             let place = |d: &Dart| mesh.ring(vertex).position(|h| Some(h) == d.halfedge(mesh, curves));
             darts.sort_by_key(place);
             let groups = if darts.len() > 2 { vec![darts] } else { darts.into_iter().map(|d| vec![d]).collect() };
             for darts in groups {
                 let kind = match darts[..] {
-                    [dart] => ending(mesh, curves, vertex, dart, reach),
+                    [dart] => match caps.at.get(&vertex) {
+                        Some(cap) => Kind::Cap(cap.clone()),
+                        None => ending(mesh, curves, vertex, dart, reach),
+                    },
                     _ => Kind::Corner,
                 };
                 for d in &darts {
@@ -122,6 +130,10 @@ impl Network {
         nodes
             .flat_map(|node| match &node.kind {
                 Kind::Corner => Vec::new(),
+                Kind::Cap(cap) => {
+                    let edge = |w: &[VertexId]| mesh.halfedge(w[0], w[1]).map(|h| mesh.edge(h));
+                    cap.section.windows(2).filter_map(edge).chain(self.border.iter().copied()).collect()
+                }
                 Kind::Stop { creases, .. } => creases.iter().flatten().map(|&h| mesh.edge(h)).collect(),
                 Kind::RunOut { onwards } => onwards.clone(),
             })

@@ -2,13 +2,12 @@
 
 use crate::blended::Blended;
 use crate::corner::closest_between;
-use crate::curve_blend::{CurveBlend, Method};
+use crate::envelope;
 use crate::error::Error;
 use crate::params::{Overlap, Params};
 use crate::so_far::SoFar;
 use crate::stitch::{ROUNDS, attempt, explained};
 use crate::trouble::Trouble;
-use crate::{envelope, field};
 use glam::DVec3;
 use mesh_core::{Bounds, Connected, Faces, Positions, TriMesh, VertexId, Watch};
 use rayon::prelude::*;
@@ -18,45 +17,20 @@ use std::collections::BTreeMap;
 /// Curves nearer to each other than this, in radii, belong to one network: their blends may meet.
 const NEIGHBOURS: f64 = 5.0;
 
-/// Blends the marked curves network by network: by the envelope of the full ball, or where that fails swept with a smaller
-/// ball here and there. Curves for which no ball is found stay sharp.
+/// Sweeps the marked curves network by network with a smaller ball here and there, or a smaller one everywhere. Curves for
+/// which no ball is found stay sharp. `failure` is what stops the ball of the radius asked for.
 pub(crate) fn by_network(
     mut so_far: SoFar<'_>,
     marked: &[bool],
+    failure: Trouble,
     params: &Params,
     watch: &Watch,
 ) -> Result<Blended, Error> {
     let (mesh, curves) = (so_far.input, so_far.all);
-    let mut refusal = None;
-    for (group, first) in groups(mesh, curves, marked, params.radius) {
-        let before = so_far.clone();
-        let length: f64 = (0..curves.len()).filter(|&i| group[i]).map(|i| curves[i].length(mesh)).sum();
-        // The envelope of a whole scan would fill its dents, too.
-        let closed = group.iter().zip(curves).all(|(own, curve)| !own || curve.closed);
-        let mut made = Err(Trouble::at("the blend fails as a field", vec![]));
-        let own: Vec<&BlendCurve> = curves.iter().zip(&group).filter(|c| *c.1).map(|c| c.0).collect();
-        if let Some(at) = envelope::sharp_end(mesh, &own, &envelope::halfedges_of(mesh, curves)) {
-            made = Err(Trouble::at("the curve ends at edges that stay sharp", vec![at]));
-        } else if !(closed && field::serves(curves, params)) {
-            // At corners of both kinds the order matters little; where one fails, the other may not.
-            for first in [first, first.opposite()] {
-                so_far = before.clone();
-                made = by_envelope(&mut so_far, &group, first, params, watch);
-                let again = length <= SHORT * params.radius && is_mixed(mesh, curves, &group);
-                if made.is_ok() || matches!(made, Err(Trouble::Cancelled(_))) || !again {
-                    break;
-                }
-            }
-        }
-        let failure = match made {
-            Ok(()) => continue,
-            Err(Trouble::Cancelled(c)) => return Err(c.into()),
-            Err(trouble) => trouble,
-        };
-        so_far = before;
-        if params.overlap == Overlap::Error {
-            return explained(mesh, curves, params, failure, watch);
-        }
+    if params.overlap == Overlap::Error {
+        return explained(mesh, curves, params, failure, watch);
+    }
+    for (group, _) in groups(mesh, curves, marked, params.radius) {
         let mut left = None;
         for (share, omissions) in SHARES {
             let smaller = Params { radius: share * params.radius, overlap: Overlap::Shrink, ..params.clone() };
@@ -67,53 +41,16 @@ pub(crate) fn by_network(
         }
         let at = failure.place().unwrap_or_else(|| start_of(mesh, &curves[0]));
         let all = || (0..curves.len()).filter(|&i| group[i]).map(|i| (i, at, failure.what())).collect();
-        let left = left.unwrap_or_else(all);
-        for (i, at, what) in left {
+        for (i, at, what) in left.unwrap_or_else(all) {
             so_far.leave(|j| j == i, at, what);
         }
-        refusal = Some(failure);
     }
-    match refusal {
-        Some(trouble) if so_far.blended.mesh.faces.is_empty() => explained(mesh, curves, params, trouble, watch),
-        _ => Ok(so_far.blended),
+    if so_far.blended.mesh.faces.is_empty() {
+        return explained(mesh, curves, params, failure, watch);
     }
+    Ok(so_far.blended)
 }
 
-/// Whether a network has ridges and valleys.
-fn is_mixed(mesh: &Connected<TriMesh>, curves: &[BlendCurve], group: &[bool]) -> bool {
-    let mut kinds = (0..curves.len()).filter(|&i| group[i]).map(|i| curves[i].convexity(mesh).ok());
-    kinds.next().is_some_and(|first| kinds.any(|kind| kind != first))
-}
-
-/// Blends a network by the envelope, one convexity after the other.
-fn by_envelope(
-    so_far: &mut SoFar<'_>,
-    group: &[bool],
-    first: Convexity,
-    params: &Params,
-    watch: &Watch,
-) -> Result<(), Trouble> {
-    let (mesh, curves) = (so_far.input, so_far.all);
-    for convexity in [first, first.opposite()] {
-        let own = |i: usize| group[i] && curves[i].convexity(mesh).unwrap_or(Convexity::Concave) == convexity;
-        if !(0..curves.len()).any(own) {
-            continue;
-        }
-        so_far.connect().map_err(|_| Trouble::at("the blend pinches", vec![]))?;
-        let chosen = so_far.pieces(own);
-        if !chosen.is_empty() {
-            let present = so_far.mesh.as_ref().unwrap_or(mesh);
-            let mut made = envelope::blend(present, &chosen, convexity, params, watch)?;
-            let by_ball = |i: usize| CurveBlend::made(Method::Envelope, params.radius, curves[i].length(mesh), 1.0);
-            made.curves = (0..curves.len()).filter(|&i| own(i)).map(by_ball).collect();
-            so_far.add(made, own);
-        }
-    }
-    Ok(())
-}
-
-/// Networks longer than this, in radii, are not tried in the other order.
-const SHORT: f64 = 300.0;
 /// Shares of the radius at which a network is swept where the envelope of the full ball fails, and how often curves are left
 /// out at each.
 const SHARES: [(f64, usize); 3] = [(1.0, 4), (0.5, 1), (0.25, 1)];
@@ -175,7 +112,7 @@ fn start_of(mesh: &Connected<TriMesh>, curve: &BlendCurve) -> DVec3 {
 
 /// The marked curves in networks that are blended together, each with the convexity that is blended first: where ridges and
 /// valleys meet, the lone one of a corner comes first and the others roll over it, as CAD kernels do.
-fn groups(
+pub(crate) fn groups(
     mesh: &Connected<TriMesh>,
     curves: &[BlendCurve],
     marked: &[bool],

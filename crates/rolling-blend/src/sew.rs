@@ -71,6 +71,21 @@ pub(crate) struct Sewn {
     pub origins: Origins,
     /// First face of the strips; they are the last ones.
     pub first_new_face: FaceId,
+    /// For each vertex of the cut mesh, its id here if it is left.
+    kept: Vec<VertexId>,
+    /// How many of them are left.
+    shift: u32,
+}
+
+impl Sewn {
+    /// The id of a vertex of the cut mesh or of a piece.
+    pub fn id(&self, v: VertexId) -> VertexId {
+        renumbered(&self.kept, self.shift, v)
+    }
+}
+
+fn renumbered(kept: &[VertexId], shift: u32, v: VertexId) -> VertexId {
+    kept.get(v.index()).copied().unwrap_or_else(|| VertexId(v.0 - kept.len() as u32 + shift))
 }
 
 /// Drops the removed faces and the vertices that only they used, keeps the order of all others, appends the strips.
@@ -99,14 +114,11 @@ pub(crate) fn sew(opened: &Opened, removed: &FaceMap<bool>, pieces: &[Piece]) ->
         vertex_origins.push(origins.vertices[v]);
     }
     let shift = positions.len() as u32;
-    let first_piece = cut.vertex_count() as u32;
     for piece in pieces {
         positions.extend_from_slice(&piece.points);
         vertex_origins.extend(std::iter::repeat_n(VertexOrigin::New { stage: STAGE }, piece.points.len()));
     }
-    let renumber = |v: VertexId| {
-        if v.0 < first_piece { new_id[v.index()] } else { VertexId(v.0 - first_piece + shift) }
-    };
+    let renumber = |v: VertexId| renumbered(&new_id, shift, v);
     let (mut faces, mut face_origins) = (Vec::with_capacity(cut.face_count()), Vec::new());
     for f in cut.face_ids().filter(|&f| !removed[f]) {
         faces.push(cut.corners(f).map(renumber));
@@ -118,6 +130,8 @@ pub(crate) fn sew(opened: &Opened, removed: &FaceMap<bool>, pieces: &[Piece]) ->
         face_origins.extend(std::iter::repeat_n(FaceOrigin::New { stage: STAGE }, piece.faces.len()));
     }
     Sewn {
+        kept: new_id,
+        shift,
         mesh: TriMesh { positions, faces },
         origins: Origins { vertices: vertex_origins.into(), faces: face_origins.into() },
         first_new_face,

@@ -39,6 +39,13 @@ impl<'a> SoFar<'a> {
         Ok(())
     }
 
+    /// Takes the input with more vertices on it for the input; nothing has been blended yet.
+    pub fn refined(mut self, mesh: TriMesh, origins: Origins) -> Self {
+        self.blended.first_blend_face = FaceId::from(mesh.faces.len());
+        (self.blended.mesh, self.blended.origins) = (mesh, origins);
+        self
+    }
+
     /// Some of the curves, as curves of the present mesh.
     pub fn curves(&self, chosen: impl Fn(usize) -> bool) -> Result<Vec<BlendCurve>, Error> {
         let chosen = (0..self.all.len()).filter(|&i| chosen(i)).map(|i| &self.all[i]);
@@ -123,12 +130,27 @@ impl<'a> SoFar<'a> {
             let why = Some((at, LeftSharp::Stage(what)));
             self.blended.curves[i] = CurveBlend::sharp(self.blended.curves[i].length, why);
         }
+        self.account(length, 0.0);
+    }
+
+    /// Notes that nothing is left of some of the curves: the blends of others cover them.
+    pub fn consumed(&mut self, chosen: impl Fn(usize) -> bool, method: Method) {
+        let length: f64 = (0..self.all.len()).filter(|&i| chosen(i)).map(|i| self.all[i].length(self.input)).sum();
+        for i in (0..self.all.len()).filter(|&i| chosen(i)) {
+            self.blended.curves[i] = CurveBlend::made(method, self.radius, self.blended.curves[i].length, 1.0);
+        }
+        self.account(length, 1.0);
+    }
+
+    /// Adds `length` of curves with a share of the full ball to the account.
+    fn account(&mut self, length: f64, full_share: f64) {
         let so_far = &mut self.blended;
-        so_far.full_share *= self.length / (self.length + length).max(f64::MIN_POSITIVE);
+        so_far.full_share =
+            (so_far.full_share * self.length + full_share * length) / (self.length + length).max(f64::MIN_POSITIVE);
         self.length += length;
     }
 
-    /// Takes over what became of the present mesh, and the account of it.
+    /// Adds a blend made on the present mesh, which becomes the present one.
     pub fn add(&mut self, made: Blended, chosen: impl Fn(usize) -> bool) {
         let own: f64 = (0..self.all.len()).filter(|&i| chosen(i)).map(|i| self.all[i].length(self.input)).sum();
         let so_far = &mut self.blended;
@@ -158,9 +180,7 @@ impl<'a> SoFar<'a> {
         so_far.shrunk.extend(made.shrunk);
         so_far.run_outs.extend(made.run_outs);
         so_far.levels = so_far.levels.max(made.levels);
-        so_far.full_share =
-            (so_far.full_share * self.length + made.full_share * own) / (self.length + own).max(f64::MIN_POSITIVE);
-        self.length += own;
         so_far.mesh = made.mesh;
+        self.account(own, made.full_share);
     }
 }

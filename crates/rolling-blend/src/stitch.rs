@@ -1,6 +1,7 @@
 //! A swept blend from rails to the sewn mesh, and the loop that makes the ball smaller where it does not fit.
 
 use crate::blended::Blended;
+use crate::cap::Caps;
 use crate::curve_blend;
 use crate::ending::{Ends, Layout};
 use crate::error::Error;
@@ -68,9 +69,21 @@ pub(crate) fn attempt(
     rounds: usize,
     watch: &Watch,
 ) -> Result<Blended, Trouble> {
+    attempt_between(mesh, curves, &Caps::default(), params, rounds, watch)
+}
+
+/// The same for curves some of which end at caps.
+pub(crate) fn attempt_between(
+    mesh: &Connected<TriMesh>,
+    curves: &[BlendCurve],
+    caps: &Caps,
+    params: &Params,
+    rounds: usize,
+    watch: &Watch,
+) -> Result<Blended, Trouble> {
     let mut mends = Mends::new(params.radius, params.radii.fields(mesh, curves, params.radius));
     let step = step_length(mesh, curves, params);
-    let mut network = Network::of(mesh, curves, REACH_AHEAD * params.radius);
+    let mut network = Network::of(mesh, curves, caps, REACH_AHEAD * params.radius);
     let meeting = network.nodes.iter().find(|n| n.darts.len() > 2 && !params.radii.is_even());
     if let Some(node) = meeting {
         return Err(Trouble::TwoRadiiMeet(mesh.position(node.vertex)));

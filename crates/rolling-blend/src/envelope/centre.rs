@@ -7,7 +7,7 @@
 
 use super::patches::Patches;
 use glam::{DMat3, DVec3};
-use mesh_core::{Bounds, Connected, FaceId, Positions, TriMesh};
+use mesh_core::{Bounds, Connected, FaceId, HalfedgeId, Positions, TriMesh};
 use mesh_query::TriBvh;
 use std::collections::BTreeMap;
 
@@ -23,12 +23,14 @@ const STEPS: usize = 80;
 const PLANES: usize = 10;
 
 /// The surface as the ball meets it.
-pub(super) struct Ground<'a> {
+pub(crate) struct Ground<'a> {
     pub mesh: &'a Connected<TriMesh>,
     pub patches: &'a Patches,
     pub tree: &'a TriBvh,
     /// 1 where the ball rolls outside the solid, −1 inside.
     pub sign: f64,
+    /// Halfedges that nothing is marked across, beside those between patches.
+    pub fences: &'a [bool],
 }
 
 /// The half space in front of a contact with a face: n·(c − foot) ≥ r.
@@ -40,6 +42,11 @@ struct Plane {
 }
 
 impl Ground<'_> {
+    /// Whether marks end at an edge unless it is blended.
+    pub fn ends_marks(&self, h: HalfedgeId) -> bool {
+        self.patches.is_wall(h) || self.fences[h.index()]
+    }
+
     /// The admissible centre nearest to `x`, sought from the plane of `face`, which should be near. `None` where there is
     /// none near by, or none is found.
     pub fn centre(&self, x: DVec3, r: f64, face: FaceId) -> Option<DVec3> {

@@ -18,6 +18,8 @@ const WIDEST: f64 = 1.2;
 /// So many vertices, or such a share, may be without a ball: the search for one is local. They follow their neighbours.
 const FEW: usize = 3;
 const SHARE: usize = 50;
+/// What is said where there is none.
+pub(crate) const NO_BALL: &str = "no ball of this size fits";
 /// Change of edge length with distance from the outline.
 const SLOPE: f64 = 0.5;
 /// Least share of the edge length that is wanted beside short edges of the outline.
@@ -46,7 +48,7 @@ pub(super) fn draw(
             .collect();
         let lost: Vec<DVec3> = inner.iter().zip(&found).filter(|f| f.1.is_none()).map(|f| *f.0).collect();
         if lost.len() > FEW.max(inner.len() / SHARE) {
-            return Err(Trouble::at("no ball of this size fits", lost));
+            return Err(Trouble::at(NO_BALL, lost));
         }
         let first = piece.rim.len();
         let missing: Vec<usize> = (0..found.len()).filter(|&i| found[i].is_none()).map(|i| first + i).collect();
@@ -55,10 +57,7 @@ pub(super) fn draw(
         }
         even(&mut mesh, &missing);
         if area(&mesh) > most {
-            return Err(Trouble::at(
-                "no ball of this size fits",
-                mesh.positions.first().copied().into_iter().collect(),
-            ));
+            return Err(Trouble::at(NO_BALL, mesh.positions.first().copied().into_iter().collect()));
         }
     }
     Ok(mesh)

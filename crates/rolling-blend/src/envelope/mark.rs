@@ -57,8 +57,7 @@ impl Fine {
     pub fn mark(&mut self, ground: &Ground<'_>, chosen: &[bool], r: f64, level: f64) -> Marked<'_> {
         let Self { mesh: fine, origins, edge_of, known } = self;
         let is_chosen = |h: HalfedgeId| edge_of[h.index()].is_some_and(|e| chosen[e.index()]);
-        let is_barrier =
-            |h: HalfedgeId| edge_of[h.index()].is_some_and(|e| !chosen[e.index()] && ground.patches.is_wall(e));
+        let is_barrier = |h: HalfedgeId| edge_of[h.index()].is_some_and(|e| !chosen[e.index()] && ground.ends_marks(e));
         let key = |f: FaceId, v: VertexId| (v, ground.patches.of(parent(origins, f)));
         let mut corners: Vec<Option<[f64; 3]>> = vec![None; fine.face_count()];
         let mut front: Vec<FaceId> = fine.halfedge_ids().filter(|&h| is_chosen(h)).map(HalfedgeId::face).collect();

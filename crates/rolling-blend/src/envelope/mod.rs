@@ -12,16 +12,19 @@
 //! | `mark.rs` | what the ball cannot reach |
 //! | `outline.rs` | the curves around it |
 //! | `flip.rs` | needles of the piece that is cut out |
+//! | `fences.rs` | cross-sections at which the piece ends, and the caps there |
 //! | `draw.rs` | the piece drawn onto the envelope |
 
 mod centre;
 mod draw;
+mod fences;
 mod flip;
 mod mark;
 mod outline;
 mod patches;
 
 use crate::blended::Blended;
+use crate::cap::{Cap, Fence};
 use crate::field::piece::{self, cut_out, kept_chords, put_back};
 use crate::linkage::Opened;
 use crate::params::{Overlap, Params, Surface};
@@ -30,19 +33,21 @@ use crate::sew::sew;
 use crate::sketch::{Drawing, Page};
 use crate::stitch::check;
 use crate::trouble::Trouble;
-use centre::Ground;
+pub(crate) use centre::Ground;
+pub(crate) use draw::NO_BALL;
+use fences::{Row, fenced, on_balls};
 use glam::DVec3;
 use mark::Fine;
 use mesh_core::{
-    Adjacency, Connected, FaceId, FaceMap, Faces, HalfedgeId, Positions, TriMesh, VertexId, VertexOrigin, Watch,
+    Adjacency, Connected, FaceId, FaceMap, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, VertexOrigin,
+    Watch,
 };
 use mesh_query::TriBvh;
-use patches::Patches;
-pub(crate) use patches::to_segment;
+pub(crate) use patches::{Patches, to_segment};
 use profile_nurbs::Profile;
 use rayon::prelude::*;
 use spine::{BlendCurve, Convexity};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use tri_intersect::embed::{curve_edges, flood};
 use tri_intersect::{EmbedError, EmbedParams, Embedded, SurfaceCurve, embed};
 
@@ -94,31 +99,39 @@ pub(crate) fn halfedges_of<'a>(
     chosen
 }
 
-/// Blends `curves`, all of one convexity, by the envelope of a ball of the radius asked for.
+/// Blends `curves`, all of one convexity, by the envelope of a ball of the radius asked for, as far as the `fences`. Gives
+/// a cap for each of these.
 pub(crate) fn blend(
     mesh: &Connected<TriMesh>,
     curves: &[BlendCurve],
     convexity: Convexity,
+    fences: &[Fence],
     params: &Params,
     watch: &Watch,
-) -> Result<Blended, Trouble> {
+) -> Result<(Blended, Vec<Cap>), Trouble> {
     let r = params.radius;
     let chosen = halfedges_of(mesh, curves);
+    let fenced = fenced(mesh, fences);
     let tree = TriBvh::build(mesh).map_err(|e| Trouble::Spine(e.into()))?;
     let patches = Patches::new(mesh, &chosen);
     let sign = if convexity == Convexity::Concave { 1.0 } else { -1.0 };
-    let ground = Ground { mesh, patches: &patches, tree: &tree, sign };
+    let ground = Ground { mesh, patches: &patches, tree: &tree, sign, fences: &fenced };
     watch.step("blend", 0.0)?;
     let outlines = outlines(&ground, curves, &chosen, r)?;
+    if outlines.is_empty() {
+        let origins = Origins::identity(0, mesh.vertex_count(), mesh.face_count());
+        return Ok((Blended::new(mesh.mesh().clone(), origins, FaceId::from(mesh.face_count())), vec![]));
+    }
     watch.step("blend", 0.3)?;
     let embedded = embed(mesh, &outlines, &EmbedParams { snap: 0.1, reach: SNAP * r }, watch).map_err(refusal)?;
     let page = params.sketch.page(mesh, &curves[0]);
     let chain = |c: &Vec<VertexId>| (c.iter().map(|&v| embedded.mesh.positions[v.index()]).collect(), true);
     page.draw_field("linkages", || Drawing::Lines(embedded.curves.iter().map(chain).collect()));
     let cut = Connected::new(&embedded.mesh).map_err(Trouble::not_manifold("the cut mesh is not a manifold"))?;
-    let removed = enclosed(mesh, curves, &cut, &embedded)?;
+    let removed = enclosed(&ground, r, curves, &cut, &embedded)?;
     let pieces = cut_out(&embedded.mesh, &removed, &embedded.curves).pieces();
-    let cut_out = CutOut { cut: &cut, removed: &removed, pieces: &pieces, embedded: &embedded };
+    let rows = fences.iter().map(|f| Row::of(f, &embedded)).collect::<Result<Vec<_>, _>>()?;
+    let cut_out = CutOut { cut: &cut, removed: &removed, pieces: &pieces, embedded: &embedded, rows: &rows };
     let edge = EDGE * r * (params.tolerance.clamp(1e-6, 0.5) / 0.005).sqrt().min(1.0);
     let mut refusal = Trouble::at("the blend cannot be tessellated", vec![]);
     for share in FINER {
@@ -136,47 +149,59 @@ struct CutOut<'a> {
     removed: &'a FaceMap<bool>,
     pieces: &'a [piece::CutOut],
     embedded: &'a Embedded,
+    rows: &'a [Row],
 }
 
 /// The pieces drawn with edges about `edge` long, put in and checked.
 fn tessellated(
-    CutOut { cut, removed, pieces, embedded }: &CutOut<'_>,
+    CutOut { cut, removed, pieces, embedded, rows }: &CutOut<'_>,
     ground: &Ground<'_>,
     r: f64,
     edge: f64,
     page: Page<'_>,
     watch: &Watch,
-) -> Result<Blended, Trouble> {
+) -> Result<(Blended, Vec<Cap>), Trouble> {
     let drawn: Vec<TriMesh> = pieces
         .par_iter()
-        .map(|piece| draw::draw(piece, ground, r, edge, &kept_chords(cut, removed, &piece.rim), watch))
+        .map(|piece| {
+            let piece = on_balls(piece, rows, r);
+            draw::draw(&piece, ground, r, edge, &kept_chords(cut, removed, &piece.rim), watch)
+        })
         .collect::<Result<_, _>>()?;
     page.draw_field("surface", || Drawing::Mesh(TriMesh::merged(&drawn)));
     let mut first_new = embedded.mesh.vertex_count() as u32;
-    let mut back = Vec::with_capacity(pieces.len());
+    let mut caps = rows.iter().map(|row| row.cap(cut, r, removed, &mut first_new)).collect::<Vec<_>>();
+    let twins: BTreeMap<VertexId, VertexId> =
+        caps.iter().flat_map(|(cap, _)| cap.section.iter().copied().zip(cap.end.iter().copied())).collect();
+    let mut back = Vec::with_capacity(pieces.len() + caps.len());
+    back.extend(caps.iter_mut().map(|(_, piece)| std::mem::take(piece)));
     for (piece, drawn) in pieces.iter().zip(&drawn) {
-        back.push(put_back(&piece.rim, drawn, first_new));
+        let rim: Vec<VertexId> = piece.rim.iter().map(|v| twins.get(v).copied().unwrap_or(*v)).collect();
+        back.push(put_back(&rim, drawn, first_new));
         first_new += (drawn.positions.len() - piece.rim.len()) as u32;
     }
     let opened =
         Opened { linkages: vec![], joints: vec![], stops: vec![], loops: vec![], embedded: (*embedded).clone() };
     let sewn = sew(&opened, removed, &back);
     check(&sewn, watch)?;
-    Ok(Blended { fields: back.len(), ..Blended::new(sewn.mesh, sewn.origins, sewn.first_new_face) })
+    let ids = |chain: &[VertexId]| chain.iter().map(|&v| sewn.id(v)).collect();
+    let caps = caps.iter().map(|(c, _)| Cap { centre: c.centre, end: ids(&c.end), section: ids(&c.section) }).collect();
+    Ok((Blended { fields: drawn.len(), ..Blended::new(sewn.mesh, sewn.origins, sewn.first_new_face) }, caps))
 }
 
-/// The outlines of what the ball cannot reach. Where they touch, they are drawn a little wider or narrower.
+/// The outlines of what the ball cannot reach; none where it touches all of the surface, as along the edges of a sliver in a
+/// smooth patch. Where they touch, they are drawn a little wider or narrower.
 fn outlines(ground: &Ground<'_>, curves: &[BlendCurve], chosen: &[bool], r: f64) -> Result<Vec<SurfaceCurve>, Trouble> {
-    let mut refusal = Trouble::at("the ball touches all of the surface", vec![]);
+    let mut refusal = None;
     let mut fine = Fine::around(ground, curves, r)?;
     for level in LEVELS {
         match outline::outlines(ground, fine.mark(ground, chosen, r, level), chosen, r) {
             Ok(found) if !found.is_empty() => return Ok(found),
             Ok(_) => {}
-            Err(trouble) => refusal = trouble,
+            Err(trouble) => refusal = Some(trouble),
         }
     }
-    Err(refusal)
+    refusal.map_or(Ok(vec![]), Err)
 }
 
 fn refusal(error: EmbedError) -> Trouble {
@@ -190,9 +215,11 @@ fn refusal(error: EmbedError) -> Trouble {
     }
 }
 
-/// The faces within the outlines; each outline must have them on one side and others on the other.
+/// The faces within the outlines: of the parts into which these divide the mesh, those in which most of the curves is under
+/// the ball. No outline may have such faces on both sides.
 fn enclosed(
-    mesh: &Connected<TriMesh>,
+    ground: &Ground<'_>,
+    r: f64,
     curves: &[BlendCurve],
     cut: &Connected<&TriMesh>,
     embedded: &Embedded,
@@ -200,7 +227,7 @@ fn enclosed(
     let chosen: HashSet<[VertexId; 2]> = curves
         .iter()
         .flat_map(|c| &c.halfedges)
-        .map(|&h| (mesh.tail(h), mesh.head(h)))
+        .map(|&h| (ground.mesh.tail(h), ground.mesh.head(h)))
         .map(|(a, b)| [a.min(b), a.max(b)])
         .collect();
     let on_curve = |h: HalfedgeId| {
@@ -219,12 +246,32 @@ fn enclosed(
         let (a, b) = (cut.tail(h), cut.head(h));
         ends.map_or(chosen.contains(&[a.min(b), a.max(b)]), |e| chosen.contains(&e) && within(e))
     };
-    let seeds: Vec<FaceId> = cut.halfedge_ids().filter(|&h| on_curve(h)).map(HalfedgeId::face).collect();
-    let walls = embedded.curves.iter().flat_map(|c| curve_edges(c, true));
-    let removed = flood(cut, walls, &seeds);
-    for [a, b] in embedded.curves.iter().flat_map(|c| curve_edges(c, true)) {
+    // Where a valley opens towards its end, the ball reaches its last bit.
+    let is_under_ball = |h: HalfedgeId| {
+        let [a, b] = cut.ends(h);
+        mark::scalar(ground, mark::parent(&embedded.origins, h.face()), a.midpoint(b), r) < 0.0
+    };
+    let walls = || embedded.curves.iter().flat_map(|c| curve_edges(c, true));
+    let mut removed = FaceMap::filled(cut.face_count(), false);
+    let mut seen = removed.clone();
+    for seed in cut.halfedge_ids().filter(|&h| on_curve(h)).map(HalfedgeId::face) {
+        if seen[seed] {
+            continue;
+        }
+        let part = flood(cut, walls(), &[seed]);
+        let own = || cut.face_ids().filter(|&f| part[f]);
+        let along: f64 = own()
+            .flat_map(FaceId::halfedges)
+            .filter(|&h| on_curve(h))
+            .map(|h| if is_under_ball(h) { cut.edge_length(h) } else { -cut.edge_length(h) })
+            .sum();
+        for f in own() {
+            (seen[f], removed[f]) = (true, along > 0.0);
+        }
+    }
+    for [a, b] in walls() {
         let faces = cut.halfedge(a, b).map(|h| [Some(h), cut.twin(h)].map(|h| h.map(|h| removed[h.face()])));
-        if !matches!(faces, Some([Some(x), Some(y)]) if x != y) {
+        if !matches!(faces, Some([Some(x), Some(y)]) if !(x && y)) {
             return Err(Trouble::at("the contact curves do not enclose the blend curve", vec![cut.position(a)]));
         }
     }

@@ -83,8 +83,7 @@ impl<'a> Outline<'a> {
 impl Outline<'_> {
     fn is_wall(&self, h: HalfedgeId) -> bool {
         let edge = self.marked.edge_of[h.index()];
-        edge.is_some_and(|e| !self.chosen[e.index()] && self.ground.patches.is_wall(e))
-            || self.marked.fine.twin(h).is_none()
+        edge.is_some_and(|e| !self.chosen[e.index()] && self.ground.ends_marks(e)) || self.marked.fine.twin(h).is_none()
     }
 
     /// Whether both ends of a halfedge are inside, as its own face sees them; `None` where its face was not reached.

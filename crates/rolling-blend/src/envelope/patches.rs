@@ -11,7 +11,7 @@ const FLAT: f64 = 2e-3;
 const FACING: f64 = 0.9;
 
 /// Smooth patches of a mesh. A drilled hole, say, is one patch of many facets.
-pub(super) struct Patches {
+pub(crate) struct Patches {
     /// The patch of each face.
     of: FaceMap<u32>,
     normals: FaceMap<DVec3>,
