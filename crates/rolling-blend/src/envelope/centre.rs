@@ -91,13 +91,14 @@ impl Ground<'_> {
         Plane { face, foot, normal }
     }
 
-    /// The point of the envelope over `x`: `x` itself where the ball can touch it. `None` where no ball can be near.
-    pub fn envelope(&self, x: DVec3, r: f64) -> Option<DVec3> {
+    /// The point of the envelope over `x`, and the ball's centre: `x` itself where the ball can touch it. `None` where no ball
+    /// can be near.
+    pub fn envelope(&self, x: DVec3, r: f64) -> Option<(DVec3, DVec3)> {
         let nearest = self.tree.closest_point(self.mesh, x)?.face;
         let centre = self.centre(x, r, nearest).or_else(|| self.centre_from_any(x, r, nearest))?;
         let arm = x - centre;
         let length = arm.length();
-        (length > 1e-3 * r).then(|| centre + arm * (r / length))
+        (length > 1e-3 * r).then(|| (centre + arm * (r / length), centre))
     }
 
     /// The nearest of the centres found from each patch within reach.

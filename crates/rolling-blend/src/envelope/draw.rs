@@ -41,10 +41,10 @@ pub(super) fn draw(
         mesh = even_out(mesh, edge, rounds, watch)?;
         split_chords(&mut mesh, piece.rim.len(), taken, 0.5 * edge);
         let inner = &mesh.positions[piece.rim.len()..];
-        let found: Vec<Option<DVec3>> = inner
+        let found: Vec<Option<(DVec3, DVec3)>> = inner
             .par_iter()
             .with_min_len(16)
-            .map(|&p| ground.envelope(p, r).filter(|q| q.distance(p) < reach * r))
+            .map(|&p| ground.envelope(p, r).filter(|q| q.0.distance(p) < reach * r))
             .collect();
         let lost: Vec<DVec3> = inner.iter().zip(&found).filter(|f| f.1.is_none()).map(|f| *f.0).collect();
         if lost.len() > FEW.max(inner.len() / SHARE) {
@@ -52,10 +52,11 @@ pub(super) fn draw(
         }
         let first = piece.rim.len();
         let missing: Vec<usize> = (0..found.len()).filter(|&i| found[i].is_none()).map(|i| first + i).collect();
-        for (at, found) in mesh.positions[first..].iter_mut().zip(found) {
-            *at = found.unwrap_or(*at);
+        for (at, found) in mesh.positions[first..].iter_mut().zip(&found) {
+            *at = found.map_or(*at, |f| f.0);
         }
-        even(&mut mesh, &missing);
+        let centre = |v: usize| v.checked_sub(first).and_then(|i| found[i]).map(|f| f.1);
+        follow_neighbours(&mut mesh, &missing, centre, r);
         if area(&mesh) > most {
             return Err(Trouble::at(NO_BALL, mesh.positions.first().copied().into_iter().collect()));
         }
@@ -63,15 +64,20 @@ pub(super) fn draw(
     Ok(mesh)
 }
 
-/// Moves some vertices to the mean of their neighbours.
-fn even(mesh: &mut TriMesh, some: &[usize]) {
+/// Moves some vertices to the mean of their neighbours, and from there onto the balls that touch these.
+fn follow_neighbours(mesh: &mut TriMesh, some: &[usize], centre: impl Fn(usize) -> Option<DVec3>, r: f64) {
     for &v in some {
-        let around =
-            mesh.faces.iter().filter(|f| f.iter().any(|w| w.index() == v)).flatten().filter(|w| w.index() != v);
-        let (sum, count) = around.fold((DVec3::ZERO, 0), |(s, n), w| (s + mesh.positions[w.index()], n + 1));
-        if count > 0 {
-            mesh.positions[v] = sum / f64::from(count);
+        let has = |f: &&[VertexId; 3]| f.iter().any(|w| w.index() == v);
+        let around: BTreeSet<usize> =
+            mesh.faces.iter().filter(has).flatten().map(|w| w.index()).filter(|&w| w != v).collect();
+        let mean = |points: Vec<DVec3>| points.iter().sum::<DVec3>() / points.len() as f64;
+        if around.is_empty() {
+            continue;
         }
+        let middle = mean(around.iter().map(|&w| mesh.positions[w]).collect());
+        let on_balls: Vec<DVec3> =
+            around.iter().filter_map(|&w| centre(w)).map(|c| c + r * (middle - c).normalize_or_zero()).collect();
+        mesh.positions[v] = if on_balls.is_empty() { middle } else { mean(on_balls) };
     }
 }
 

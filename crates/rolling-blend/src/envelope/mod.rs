@@ -40,7 +40,7 @@ use glam::DVec3;
 use mark::Fine;
 use mesh_core::{
     Adjacency, Connected, FaceId, FaceMap, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, VertexOrigin,
-    Watch,
+    Watch, dihedral_angle,
 };
 use mesh_query::TriBvh;
 pub(crate) use patches::{Patches, to_segment};
@@ -56,6 +56,8 @@ const EDGE: f64 = 0.3;
 /// Shares of that length which are tried where the blend then meets itself in no more than a few places.
 const FINER: [f64; 2] = [1.0, 0.6];
 const FEW: usize = 32;
+/// A turn between two faces of the envelope that is a fold, in radians: 95 degrees.
+const FOLD: f64 = 1.66;
 /// Levels of the scalar at which outlines are drawn, in radii, in the order in which they are tried. The first counts a face
 /// that a ball touches along its whole middle as consumed.
 const LEVELS: [f64; 3] = [1e-6, 4e-3, -4e-3];
@@ -184,9 +186,23 @@ fn tessellated(
         Opened { linkages: vec![], joints: vec![], stops: vec![], loops: vec![], embedded: (*embedded).clone() };
     let sewn = sew(&opened, removed, &back);
     check(&sewn, watch)?;
+    let in_caps: usize = back[..caps.len()].iter().map(|p| p.faces.len()).sum();
+    unfolded(&sewn.mesh, sewn.first_new_face.index() + in_caps)?;
     let ids = |chain: &[VertexId]| chain.iter().map(|&v| sewn.id(v)).collect();
     let caps = caps.iter().map(|(c, _)| Cap { centre: c.centre, end: ids(&c.end), section: ids(&c.section) }).collect();
     Ok((Blended { fields: drawn.len(), ..Blended::new(sewn.mesh, sewn.origins, sewn.first_new_face) }, caps))
+}
+
+/// Refuses a surface that turns back on itself: no envelope does between edges as short as these. `first` is the first of the
+/// faces that are drawn.
+fn unfolded(mesh: &TriMesh, first: usize) -> Result<(), Trouble> {
+    let drawn = TriMesh { positions: mesh.positions.clone(), faces: mesh.faces[first..].to_vec() };
+    let drawn = Connected::new(drawn).map_err(Trouble::not_manifold("the blend pinches"))?;
+    let folded = |&h: &HalfedgeId| {
+        drawn.twin(h).is_some_and(|t| h < t) && dihedral_angle(&drawn, h).is_some_and(|a| a.abs() > FOLD)
+    };
+    let places: Vec<DVec3> = drawn.halfedge_ids().filter(folded).map(|h| drawn.position(drawn.tail(h))).collect();
+    if places.is_empty() { Ok(()) } else { Err(Trouble::at("the blend folds", places)) }
 }
 
 /// The outlines of what the ball cannot reach; none where it touches all of the surface, as along the edges of a sliver in a
