@@ -2,7 +2,7 @@
 
 use crate::blended::Blended;
 use crate::error::Error;
-use crate::networks::by_network;
+use crate::networks::{NEIGHBOURS, by_network};
 use crate::params::{Overlap, Params, Surface};
 use crate::so_far::SoFar;
 use crate::stitch::{ROUNDS, attempt, explained};
@@ -12,9 +12,6 @@ use crate::{envelope, field, measure};
 use glam::DVec3;
 use mesh_core::{Connected, Faces, TriMesh, VertexId, Watch};
 use spine::{BlendCurve, Convexity};
-
-/// Curves nearer to each other than this, in radii, are blended in the same way: their blends may meet.
-const NEIGHBOURS: f64 = 5.0;
 
 /// Sweeps all curves, or with [`Surface::Field`] none. Those near a place where that fails are blended as a field if they
 /// are closed, or else by the ball's envelope.

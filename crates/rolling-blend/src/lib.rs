@@ -24,7 +24,7 @@
 //! | `curve_blend.rs`, `measure.rs` | what each curve was blended by; the ball error of the result |
 //! | `auto.rs` | which curves are swept and which are blended as a field |
 //! | `zones/` | the envelope around places where a sweep fails, strips everywhere else |
-//! | `networks.rs` | networks on which a plain sweep fails |
+//! | `networks.rs` | networks swept in part, with a smaller ball, or not at all |
 //! | `so_far.rs` | a mesh on its way through several blends |
 //! | `limit.rs`, `width.rs` | the largest radius that fits; how wide the sides of a curve are |
 //! | `radii.rs`, `profiles.rs` | how radius and cross-section vary along a curve, and the radius between its sides |

@@ -1,4 +1,4 @@
-//! Networks of open curves on which a plain sweep fails: by the envelope, in part, or not at all.
+//! Networks of curves swept in part, with a smaller ball, or not at all.
 
 use crate::blended::Blended;
 use crate::corner::closest_between;
@@ -15,7 +15,7 @@ use spine::{BlendCurve, Convexity};
 use std::collections::BTreeMap;
 
 /// Curves nearer to each other than this, in radii, belong to one network: their blends may meet.
-const NEIGHBOURS: f64 = 5.0;
+pub(crate) const NEIGHBOURS: f64 = 5.0;
 
 /// Sweeps the marked curves network by network with a smaller ball here and there, or a smaller one everywhere. Curves for
 /// which no ball is found stay sharp. `failure` is what stops the ball of the radius asked for.

@@ -209,7 +209,7 @@ fn some_faces(mesh: &Connected<TriMesh>, faces: &[FaceId]) -> TriMesh {
     by_themselves(faces.iter().map(|&f| mesh.corners(f)), |v| mesh.mesh().positions[v.index()])
 }
 
-/// A mesh of these faces alone, their vertices numbered anew in the order of their ids.
+/// A mesh of these faces alone, their vertices renumbered in the order of their ids.
 fn by_themselves(faces: impl Iterator<Item = [VertexId; 3]> + Clone, position: impl Fn(VertexId) -> DVec3) -> TriMesh {
     let mut vertices: Vec<VertexId> = faces.clone().flatten().collect();
     vertices.sort_unstable();

@@ -2,12 +2,11 @@
 
 use super::centre::Ground;
 use super::flip::flip_needles;
-use crate::field::piece::{CutOut, split_chords};
+use crate::field::piece::{CutOut, Evenness, even_out, split_chords};
 use crate::trouble::Trouble;
 use glam::DVec3;
-use mesh_core::{Connected, TriMesh, VertexId, Watch, area};
+use mesh_core::{TriMesh, VertexId, Watch, area};
 use rayon::prelude::*;
-use remesh::{Frozen, Projection, Sizing, graded_sizes};
 use std::collections::BTreeSet;
 
 /// Rounds of each remeshing of the piece, and how far its vertices may then be drawn, in radii: the cut-out piece has needles,
@@ -20,10 +19,6 @@ const FEW: usize = 3;
 const SHARE: usize = 50;
 /// What is said where there is none.
 pub(crate) const NO_BALL: &str = "no ball of this size fits";
-/// Change of edge length with distance from the outline.
-const SLOPE: f64 = 0.5;
-/// Least share of the edge length that is wanted beside short edges of the outline.
-const FINEST: f64 = 0.5;
 
 /// Draws the piece onto the envelope of balls of radius `r`, with edges about `edge` long. Its topology stays.
 pub(super) fn draw(
@@ -38,7 +33,7 @@ pub(super) fn draw(
     flip_needles(&mut mesh);
     let most = WIDEST * area(&piece.mesh);
     for (rounds, reach) in PASSES {
-        mesh = even_out(mesh, edge, rounds, watch)?;
+        mesh = even_out(mesh, edge, Evenness { rounds, slope: 0.5, finest: 0.5 }, watch)?;
         split_chords(&mut mesh, piece.rim.len(), taken, 0.5 * edge);
         let inner = &mesh.positions[piece.rim.len()..];
         let found: Vec<Option<(DVec3, DVec3)>> = inner
@@ -78,21 +73,5 @@ fn follow_neighbours(mesh: &mut TriMesh, some: &[usize], centre: impl Fn(usize) 
         let on_balls: Vec<DVec3> =
             around.iter().filter_map(|&w| centre(w)).map(|c| c + r * (middle - c).normalize_or_zero()).collect();
         mesh.positions[v] = if on_balls.is_empty() { middle } else { mean(on_balls) };
-    }
-}
-
-fn even_out(mesh: TriMesh, edge: f64, rounds: usize, watch: &Watch) -> Result<TriMesh, Trouble> {
-    let at: Vec<DVec3> = mesh.positions.first().copied().into_iter().collect();
-    let failed = |_| Trouble::at("the blend cannot be tessellated", at.clone());
-    let connected =
-        Connected::new(mesh).map_err(|e| Trouble::at("the outlines touch", e.place.into_iter().collect()))?;
-    let mut sizes = graded_sizes(&connected, edge, SLOPE).map_err(failed)?;
-    // Outlines have short edges where they pass close by vertices; small triangles beside them would crumple.
-    sizes.as_mut_slice().iter_mut().for_each(|s| *s = s.max(FINEST * edge));
-    let how = remesh::Params { feature_angle: 180.0, rounds, ..remesh::Params::new(edge) };
-    match remesh::remesh(&connected, &Frozen::default(), Sizing::PerVertex(&sizes), &how, Projection::Input, watch) {
-        Ok(made) => Ok(made.mesh),
-        Err(remesh::Error::Cancelled(c)) => Err(Trouble::Cancelled(c)),
-        Err(e) => Err(failed(e)),
     }
 }

@@ -145,7 +145,7 @@ pub(crate) fn blend(
     Err(refusal)
 }
 
-/// The mesh with everything cut, and what of it is to be drawn anew.
+/// The mesh with everything cut, and what of it is replaced.
 struct CutOut<'a> {
     cut: &'a Connected<&'a TriMesh>,
     removed: &'a FaceMap<bool>,

@@ -14,7 +14,7 @@ const STEPS: usize = 20;
 const CONTACTS: usize = 12;
 
 /// Where the blend passes near `p`: on the ball nearest to `p` of all that stay outside both sides. Where that ball
-/// rests on the side below `p` alone, this is the side itself. `None` where no such ball is found.
+/// rests on the side below `p` alone, this is the side itself. `None` where none is found.
 pub(crate) fn target(sides: &Sides<'_>, radius: &RadiusField, p: DVec3) -> Option<DVec3> {
     let r = radius.at(p).0;
     let center = nearest_center(sides, r, p)?;
@@ -79,7 +79,7 @@ impl Plane {
 }
 
 /// The point nearest to `p` beyond all planes: the first choice of up to three of them that all push outwards and
-/// satisfy the others. `None` if there is no such point.
+/// satisfy the others. `None` if no point does.
 fn nearest_beyond(planes: &[Plane], p: DVec3, tolerance: f64) -> Option<DVec3> {
     let n = planes.len();
     let meets = |x: DVec3| planes.iter().all(|h| h.slack(x) >= -tolerance);

@@ -139,8 +139,7 @@ fn settle_on(
     let edge = step_length(mesh, curves, params);
     let mut radius = RadiusField::constant(params.radius);
     let mut spots: Vec<(DVec3, usize)> = vec![];
-    let mut earlier = vec![];
-    let mut sharp = vec![];
+    let mut tries = Tries::default();
     let length: f64 = curves.iter().map(|c| c.length(mesh)).sum();
     if length > LONG * params.radius && !touches(sides, curves, &radius) {
         return Err(
@@ -152,20 +151,19 @@ fn settle_on(
     let fine = refined(sides, radius.base).map_err(|t| t.into_error(params.radius))?;
     for round in 0.. {
         watch.step("blend", round as f64 / rounds as f64)?;
-        let resigned_before = sharp.len();
-        let resigned = round >= PATIENT && params.overlap == Overlap::Shrink;
-        let trouble =
-            match attempt(sides, &fine, &radius, edge, params, &mut earlier, &mut sharp, resigned, page, watch) {
-                Ok(mut blended) => {
-                    let left = length_left_sharp(mesh, curves, &blended);
-                    blended.full_share = full_share(sides, &blended, params.radius) * (1.0 - left / length);
-                    blended.shrunk = radius.dips.iter().map(|d| (d.at, radius.at(d.at).0)).collect();
-                    let sharp: Vec<_> = sharp_places(mesh, curves, &blended).map(|at| (at, 0.0)).collect();
-                    blended.shrunk.extend(sharp);
-                    return Ok(blended);
-                }
-                Err(trouble) => trouble,
-            };
+        let resigned_before = tries.sharp.len();
+        tries.resigned = round >= PATIENT && params.overlap == Overlap::Shrink;
+        let trouble = match attempt(sides, &fine, &radius, edge, params, &mut tries, page, watch) {
+            Ok(mut blended) => {
+                let left = length_left_sharp(mesh, curves, &blended);
+                blended.full_share = full_share(sides, &blended, params.radius) * (1.0 - left / length);
+                blended.shrunk = radius.dips.iter().map(|d| (d.at, radius.at(d.at).0)).collect();
+                let sharp: Vec<_> = sharp_places(mesh, curves, &blended).map(|at| (at, 0.0)).collect();
+                blended.shrunk.extend(sharp);
+                return Ok(blended);
+            }
+            Err(trouble) => trouble,
+        };
         params.sketch.refusal(&trouble, params.radius);
         let places = match &trouble {
             Trouble::Places { places, .. } if round < rounds && params.overlap == Overlap::Shrink => places,
@@ -174,7 +172,7 @@ fn settle_on(
         if places.is_empty() {
             return Err(trouble.into_error(params.radius));
         }
-        if !resigned || sharp.len() == resigned_before {
+        if !tries.resigned || tries.sharp.len() == resigned_before {
             shrink(&mut radius, &mut spots, places, round);
         }
     }
@@ -241,16 +239,24 @@ impl Drawn {
     }
 }
 
-#[allow(clippy::too_many_arguments)]
+/// What earlier tries leave to the next.
+#[derive(Default)]
+struct Tries {
+    /// Pieces drawn in the last one.
+    drawn: Vec<Drawn>,
+    /// Places around which the curves stay sharp.
+    sharp: Vec<DVec3>,
+    /// Whether places of trouble are added to these.
+    resigned: bool,
+}
+
 fn attempt(
     sides: &Sides<'_>,
     fine: &Fine,
     radius: &RadiusField,
     edge: f64,
     params: &Params,
-    earlier: &mut Vec<Drawn>,
-    sharp: &mut Vec<DVec3>,
-    resigned: bool,
+    tries: &mut Tries,
     page: Page<'_>,
     watch: &Watch,
 ) -> Result<Blended, Trouble> {
@@ -268,15 +274,15 @@ fn attempt(
     page.draw_field("linkages", || Drawing::Lines(embedded.curves.iter().map(chain).collect()));
     let cut = Connected::new(&embedded.mesh).map_err(Trouble::not_manifold("the cut mesh is not a manifold"))?;
     let mut removed = enclosed(sides, &cut, &embedded)?;
-    leave_sharp(&cut, &mut removed, sharp);
+    leave_sharp(&cut, &mut removed, &tries.sharp);
     if !removed.as_slice().contains(&true) {
-        return Err(Trouble::at("the ball touches all of the surface", sharp.iter().copied().take(1).collect()));
+        return Err(Trouble::at("the ball touches all of the surface", tries.sharp.iter().copied().take(1).collect()));
     }
     let pieces = cut_out(&embedded.mesh, &removed, &embedded.curves).pieces();
     let drawn: Vec<Result<Drawn, Trouble>> = pieces
         .par_iter()
         .map(|piece| {
-            if let Some(same) = earlier.iter().find(|d| d.is_of(piece, radius)) {
+            if let Some(same) = tries.drawn.iter().find(|d| d.is_of(piece, radius)) {
                 return Ok(same.clone());
             }
             let taken = kept_chords(&cut, &removed, &piece.rim);
@@ -284,19 +290,19 @@ fn attempt(
             Ok(Drawn { from: piece.mesh.positions.clone(), radii: Drawn::radii(piece, radius), made })
         })
         .collect();
-    *earlier = drawn.into_iter().collect::<Result<_, _>>()?;
-    page.draw_field("surface", || Drawing::Mesh(TriMesh::merged(earlier.iter().map(|d| &d.made))));
+    tries.drawn = drawn.into_iter().collect::<Result<_, _>>()?;
+    page.draw_field("surface", || Drawing::Mesh(TriMesh::merged(tries.drawn.iter().map(|d| &d.made))));
     let mut first_new = embedded.mesh.vertex_count() as u32;
     let mut back = Vec::with_capacity(pieces.len());
-    for (piece, drawn) in pieces.iter().zip(earlier.iter()) {
+    for (piece, drawn) in pieces.iter().zip(&tries.drawn) {
         back.push(put_back(&piece.rim, &drawn.made, first_new));
         first_new += (drawn.made.positions.len() - piece.rim.len()) as u32;
     }
     let opened = Opened { linkages: vec![], joints: vec![], stops: vec![], loops: vec![], embedded };
     let sewn = sew(&opened, &removed, &back);
     if let Err(trouble) = check(&sewn, watch) {
-        if resigned {
-            sharp.extend(centers_of_failing(&pieces, earlier, &trouble));
+        if tries.resigned {
+            tries.sharp.extend(centers_of_failing(&pieces, &tries.drawn, &trouble));
         }
         return Err(trouble);
     }

@@ -1,7 +1,11 @@
 //! What lies between the linkages as a mesh of its own, to be reshaped and put back.
 
 use crate::strip::Piece;
-use mesh_core::{Adjacency, Connected, FaceMap, Faces, HalfedgeId, TriMesh, VertexId, boundary_loops, components};
+use crate::trouble::Trouble;
+use mesh_core::{
+    Adjacency, Connected, FaceMap, Faces, HalfedgeId, TriMesh, VertexId, Watch, boundary_loops, components,
+};
+use remesh::{Frozen, Projection, Sizing, graded_sizes};
 use std::collections::BTreeSet;
 
 /// Some faces of a mesh by themselves.
@@ -139,4 +143,32 @@ pub(crate) fn split_chords(mesh: &mut TriMesh, rim: usize, taken: &BTreeSet<[Ver
     }
     mesh.faces = faces;
     mesh.positions = positions;
+}
+
+/// How evenly a piece is remeshed.
+#[derive(Clone, Copy)]
+pub(crate) struct Evenness {
+    /// Rounds of remeshing.
+    pub rounds: usize,
+    /// Change of edge length with distance from the rim.
+    pub slope: f64,
+    /// Least share of the edge length that is wanted beside short edges of the rim: where it passes close by vertices, small
+    /// triangles would crumple.
+    pub finest: f64,
+}
+
+/// Remeshes a piece with edges about `edge` long; its rim stays.
+pub(crate) fn even_out(mesh: TriMesh, edge: f64, how: Evenness, watch: &Watch) -> Result<TriMesh, Trouble> {
+    let at = mesh.positions.first().copied();
+    let failed = |_| Trouble::at("the blend cannot be tessellated", at.into_iter().collect());
+    let connected =
+        Connected::new(mesh).map_err(|e| Trouble::at("the contact curves touch", e.place.into_iter().collect()))?;
+    let mut sizes = graded_sizes(&connected, edge, how.slope).map_err(failed)?;
+    sizes.as_mut_slice().iter_mut().for_each(|s| *s = s.max(how.finest * edge));
+    let params = remesh::Params { feature_angle: 180.0, rounds: how.rounds, ..remesh::Params::new(edge) };
+    match remesh::remesh(&connected, &Frozen::default(), Sizing::PerVertex(&sizes), &params, Projection::Input, watch) {
+        Ok(made) => Ok(made.mesh),
+        Err(remesh::Error::Cancelled(c)) => Err(Trouble::Cancelled(c)),
+        Err(e) => Err(failed(e)),
+    }
 }

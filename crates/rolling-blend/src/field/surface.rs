@@ -1,7 +1,7 @@
 //! The blend's surface: the cut-out piece of the mesh, drawn onto the balls and made fair.
 
 use super::ball::target;
-use super::piece::{CutOut, split_chords};
+use super::piece::{CutOut, Evenness, even_out, split_chords};
 use super::plate::Plate;
 use super::sides::Sides;
 use crate::trouble::Trouble;
@@ -10,7 +10,6 @@ use mesh_core::{
     Adjacency, Connected, Faces, HalfedgeId, Positions, TriMesh, VertexId, Watch, area_vector, boundary_loops,
 };
 use rayon::prelude::*;
-use remesh::{Frozen, Projection, Sizing, graded_sizes};
 use spine::RadiusField;
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -23,10 +22,8 @@ const STRAY: f64 = 0.03;
 const REVISIONS: usize = 3;
 /// How often the piece is remeshed and drawn.
 const PASSES: usize = 3;
-/// Change of edge length with distance from the linkages.
-const SLOPE: f64 = 0.3;
-/// Least share of the edge length that is wanted beside short edges of the linkages.
-const FINEST: f64 = 0.6;
+/// How evenly it is remeshed each time.
+const EVENNESS: Evenness = Evenness { rounds: 4, slope: 0.3, finest: 0.6 };
 /// Window along a linkage over which normals and tangents are averaged, in radii.
 const WINDOW: f64 = 0.25;
 
@@ -51,7 +48,7 @@ pub(crate) fn draw(
     let at = || piece.mesh.positions.first().copied().into_iter().collect::<Vec<_>>();
     let mut mesh = piece.mesh.clone();
     for pass in 1..=PASSES {
-        mesh = even_out(mesh, edge, watch)?;
+        mesh = even_out(mesh, edge, EVENNESS, watch)?;
         split_chords(&mut mesh, piece.rim.len(), taken, 0.5 * edge);
         let connected =
             Connected::new(&mesh).map_err(|e| Trouble::at("the linkages touch", e.place.into_iter().collect()))?;
@@ -62,23 +59,6 @@ pub(crate) fn draw(
         mesh.positions = points;
     }
     Ok(mesh)
-}
-
-fn even_out(mesh: TriMesh, edge: f64, watch: &Watch) -> Result<TriMesh, Trouble> {
-    let at = mesh.positions.first().copied();
-    let failed = |_| Trouble::at("the blend cannot be tessellated", at.into_iter().collect());
-    let connected =
-        Connected::new(mesh).map_err(|e| Trouble::at("the linkages touch", e.place.into_iter().collect()))?;
-    let mut sizes = graded_sizes(&connected, edge, SLOPE).map_err(failed)?;
-    // Linkages have short edges where they pass close by vertices; small triangles beside them would crumple.
-    sizes.as_mut_slice().iter_mut().for_each(|s| *s = s.max(FINEST * edge));
-    let how = remesh::Params { feature_angle: 180.0, rounds: 4, ..remesh::Params::new(edge) };
-    let sizing = Sizing::PerVertex(&sizes);
-    match remesh::remesh(&connected, &Frozen::default(), sizing, &how, Projection::Input, watch) {
-        Ok(made) => Ok(made.mesh),
-        Err(remesh::Error::Cancelled(c)) => Err(Trouble::Cancelled(c)),
-        Err(e) => Err(failed(e)),
-    }
 }
 
 /// One thin plate: drawn to the balls, strays left out, tangent to the kept surface at the linkages.
