@@ -68,7 +68,7 @@ pub use compose::Stage;
 pub use connected::{Connected, NotManifold};
 pub use cotangent::{cotangent_weight, cotangents, mean_curvature_vectors, mixed_areas};
 pub use geodesic::{Flood, FloodParams, Seed, Source, flood};
-pub use id_hash::{IdHasher, IdSet};
+pub use id_hash::IdSet;
 pub use ids::{EdgeId, FaceId, HalfedgeId, VertexId};
 pub use loops::boundary_loops;
 pub use map::{CornerMap, FaceMap, IdMap, VertexMap};
