@@ -27,7 +27,7 @@
 //! | `cotangent.rs` | cotangent weights, mixed areas, mean-curvature vectors |
 //! | `orient.rs`, `split.rs` | repair on request: orientation, copies at non-manifold places |
 //! | `conformance.rs` | checks for implementors of the traits, behind the feature `conformance` |
-//! | `watch.rs` | progress and cancellation |
+//! | `watch.rs`, `stopwatch.rs` | progress and cancellation, time |
 //! | `shapes/` | procedural shapes for tests and fixtures |
 
 mod bounds;
@@ -55,6 +55,7 @@ mod path;
 mod sectors;
 pub mod shapes;
 mod split;
+mod stopwatch;
 mod surface_point;
 mod trace;
 mod traits;
@@ -84,6 +85,7 @@ pub use orient::orient;
 pub use origin::{FaceOrigin, Origins, VertexOrigin};
 pub use path::shortest_path;
 pub use split::split;
+pub use stopwatch::Stopwatch;
 pub use surface_point::SurfacePoint;
 pub use trace::{TraceError, TraceLimits, trace};
 pub use traits::{Adjacency, EditObserver, Faces, MeshSink, Positions, Ring};

@@ -9,12 +9,11 @@ use crate::near::near;
 use crate::{check, cut, pinch, seam, tidy};
 use glam::DVec3;
 use mesh_core::{
-    Adjacency, Bounds, Connected, FaceId, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, Watch,
+    Adjacency, Bounds, Connected, FaceId, Faces, HalfedgeId, Origins, Positions, Stopwatch, TriMesh, VertexId, Watch,
 };
 use mesh_query::TriBvh;
 use rayon::prelude::*;
 use std::sync::LazyLock;
-use std::time::Instant;
 
 /// Which points the result holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -161,7 +160,7 @@ pub fn boolean(
     params: &Params,
     watch: &Watch,
 ) -> Result<Boolean, Error> {
-    let mut clock = Clock { since: Instant::now(), report: Report::default() };
+    let mut clock = Clock { stopwatch: Stopwatch::start(), report: Report::default() };
     let parts = arrange::parts(a, b)?;
     let bounds = check_solid(&parts)?;
     clock.lap("check");
@@ -282,15 +281,13 @@ pub fn boolean(
 
 /// Notes how long each stage took.
 struct Clock {
-    since: Instant,
+    stopwatch: Stopwatch,
     report: Report,
 }
 
 impl Clock {
     fn lap(&mut self, stage: &'static str) {
-        let now = Instant::now();
-        self.report.stages.push((stage, (now - self.since).as_secs_f64() * 1e3));
-        self.since = now;
+        self.report.stages.push((stage, self.stopwatch.lap().as_secs_f64() * 1e3));
     }
 
     /// Refuses or notes a place where sheets touch.
