@@ -20,6 +20,7 @@
 //! | `normal.rs` | normals of faces, vertices, sides and corners |
 //! | `measure.rs` | area, volume, edge lengths, dihedral angles, genus |
 //! | `geodesic.rs`, `sectors.rs`, `path.rs` | distance floods with barriers, cheapest paths along edges |
+//! | `segment.rs` | distances from segments and polylines |
 //! | `origin.rs`, `compose.rs` | provenance of vertices and faces, composed across stages |
 //! | `surface_point.rs` | a point on a mesh, by vertex, edge or face |
 //! | `trace.rs` | straight walks over the surface between two points |
@@ -53,6 +54,7 @@ mod orient;
 mod origin;
 mod path;
 mod sectors;
+mod segment;
 pub mod shapes;
 mod split;
 mod stopwatch;
@@ -84,6 +86,7 @@ pub use normal::{
 pub use orient::orient;
 pub use origin::{FaceOrigin, Origins, VertexOrigin};
 pub use path::shortest_path;
+pub use segment::{closed_segments, closest_on_segment, distance_to_segment, distance_to_segments, open_segments};
 pub use split::split;
 pub use stopwatch::Stopwatch;
 pub use surface_point::SurfacePoint;
