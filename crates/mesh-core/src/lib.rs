@@ -25,7 +25,7 @@
 //! | `surface_point.rs` | a point on a mesh, by vertex, edge or face |
 //! | `trace.rs` | straight walks over the surface between two points |
 //! | `bounds.rs` | axis-aligned boxes |
-//! | `cotangent.rs` | cotangent weights, mixed areas, mean-curvature vectors |
+//! | `curvature.rs` | mixed areas, mean-curvature vectors |
 //! | `orient.rs`, `split.rs` | repair on request: orientation, copies at non-manifold places |
 //! | `conformance.rs` | checks for implementors of the traits, behind the feature `conformance` |
 //! | `watch.rs`, `stopwatch.rs` | progress and cancellation, time |
@@ -40,7 +40,7 @@ mod compose;
 pub mod conformance;
 mod connected;
 mod corner_table;
-mod cotangent;
+mod curvature;
 mod edge_groups;
 mod geodesic;
 mod id_hash;
@@ -69,7 +69,7 @@ pub use collinear::collinear;
 pub use components::{Components, components};
 pub use compose::Stage;
 pub use connected::{Connected, NotManifold};
-pub use cotangent::{cotangent_weight, cotangents, mean_curvature_vectors, mixed_areas};
+pub use curvature::{mean_curvature_vectors, mixed_areas};
 pub use geodesic::{Flood, FloodParams, Seed, Source, flood};
 pub use id_hash::IdSet;
 pub use ids::{EdgeId, FaceId, HalfedgeId, VertexId};
