@@ -1,9 +1,10 @@
 //! Neighbourhoods of a mesh that was made from connected ones: what whole faces had beside them they have again, and only
 //! the rest is matched anew.
 
-use crate::connected::{Connected, NotManifold};
+use crate::connected::Connected;
 use crate::corner_table::{NONE, distinct, fans, in_range};
 use crate::ids::{FaceId, HalfedgeId, VertexId};
+use crate::not_manifold::NotManifold;
 use crate::origin::{FaceOrigin, Origins, VertexOrigin};
 use crate::traits::{Adjacency, Faces, Positions};
 use rayon::prelude::*;

@@ -13,7 +13,7 @@
 //! | `ids.rs`, `map.rs`, `id_hash.rs` | typed indices, the vectors they index, sets of them |
 //! | `traits.rs` | the five traits: faces, adjacency, positions, sink, edit observer |
 //! | `mesh.rs` | `TriMesh`, passive positions and faces |
-//! | `connected.rs`, `corner_table.rs`, `edge_groups.rs` | `Connected`, the one place that decides manifoldness |
+//! | `connected.rs`, `corner_table.rs`, `edge_groups.rs`, `not_manifold.rs` | `Connected`, the one place that decides manifoldness |
 //! | `carried.rs` | the same for meshes made from connected ones |
 //! | `validate.rs`, `collinear.rs` | every defect of a mesh, by kind |
 //! | `loops.rs`, `components.rs` | boundary loops and connected components |
@@ -50,6 +50,7 @@ pub mod map;
 mod measure;
 mod mesh;
 mod normal;
+mod not_manifold;
 mod orient;
 mod origin;
 mod path;
@@ -68,7 +69,7 @@ pub use bounds::Bounds;
 pub use collinear::collinear;
 pub use components::{Components, components};
 pub use compose::Stage;
-pub use connected::{Connected, NotManifold};
+pub use connected::Connected;
 pub use curvature::{mean_curvature_vectors, mixed_areas};
 pub use geodesic::{Flood, FloodParams, Seed, Source, flood};
 pub use id_hash::IdSet;
@@ -83,6 +84,7 @@ pub use normal::{
     area_vector, corner_angle, corner_normals, face_normal, face_normals, one_sided_normal, triangle_normal,
     vertex_normals,
 };
+pub use not_manifold::NotManifold;
 pub use orient::orient;
 pub use origin::{FaceOrigin, Origins, VertexOrigin};
 pub use path::shortest_path;

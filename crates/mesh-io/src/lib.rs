@@ -15,7 +15,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `model.rs` | [`Model`]: triangles with corner attributes, groups, materials, polygons, notes |
-//! | `format.rs`, `error.rs`, `notes.rs` | names of formats; what went wrong, or was changed, and where |
+//! | `format.rs`, `named.rs`, `error.rs`, `notes.rs` | formats and their names; what went wrong, or was changed, and where |
 //! | `read.rs`, `write.rs` | from files to models and back |
 //! | `atomic.rs` | files that appear together or not at all |
 //! | `folder.rs` | references to side files that are safe to follow |
@@ -32,6 +32,7 @@ mod folder;
 mod format;
 mod gltf;
 mod model;
+mod named;
 mod notes;
 mod number;
 mod obj;
