@@ -1,12 +1,12 @@
 //! Everything a change must pass, in order of how fast it fails.
 
 use crate::{Fault, regress, root, tidy};
+use mesh_core::Stopwatch;
 use std::process::Command;
-use std::time::Instant;
 
 /// Runs every check and stops at the first that fails.
 pub fn run() -> Result<(), Fault> {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     tidy::run()?;
     if installed("fmt") {
         cargo(&["fmt", "--all", "--check"])?;
@@ -34,7 +34,7 @@ fn installed(component: &str) -> bool {
 fn cargo(arguments: &[&str]) -> Result<(), Fault> {
     let line = arguments.join(" ");
     println!("ci: cargo {line}");
-    let start = Instant::now();
+    let start = Stopwatch::start();
     // A change must not fail by what another day's cases found: the workflow's `seeds` job draws new ones every week.
     let seed = std::env::var("PROPTEST_RNG_SEED").unwrap_or_else(|_| "1".into());
     let mut command = Command::new(env!("CARGO"));

@@ -8,10 +8,12 @@
 //! | `collect.rs` | real models from where they come from |
 //! | `bench.rs` | benchmarks into a page |
 //! | `pages.rs` | what stands between marks on a page |
+//! | `circles.rs` | files that import each other |
 //! | `tidy.rs` | crate arrows, file lengths, citations, paths, pages that are stale |
 
 mod bench;
 mod ci;
+mod circles;
 mod collect;
 mod fixtures;
 mod models;

@@ -4,7 +4,7 @@ use crate::Fault;
 use fusion::remeshing;
 use glam::{DVec2, DVec3};
 use lmc_tessellate::isosurface;
-use mesh_core::{TriMesh, VertexId, Watch, shapes};
+use mesh_core::{TriMesh, VertexId, Watch, closest_on_segment, shapes};
 use mesh_io::{Format, Model};
 
 /// A ball of changing radius drawn from one point to another, and how far it melts into those before it.
@@ -55,9 +55,8 @@ fn grown(cones: &[Cone], cell: f64, edge: f64) -> Result<TriMesh, Fault> {
 /// Signed distance, nearly: cones in order, each melting into what is there.
 fn depth(cones: &[Cone], p: DVec3) -> f64 {
     cones.iter().fold(f64::INFINITY, |so_far, c| {
-        let along = c.ends[1] - c.ends[0];
-        let t = ((p - c.ends[0]).dot(along) / along.length_squared()).clamp(0.0, 1.0);
-        let own = p.distance(c.ends[0] + t * along) - (c.radii[0] + t * (c.radii[1] - c.radii[0]));
+        let (t, axis) = closest_on_segment(p, c.ends);
+        let own = p.distance(axis) - (c.radii[0] + t * (c.radii[1] - c.radii[0]));
         let overlap = (c.melt - (so_far - own).abs()).max(0.0) / c.melt;
         so_far.min(own) - 0.25 * c.melt * overlap * overlap
     })

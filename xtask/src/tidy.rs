@@ -1,6 +1,6 @@
-//! The house rules a compiler does not check: crate arrows, file lengths, lints switched on, citations, paths, pages written by the machine.
+//! The house rules a compiler does not check: crate arrows, circles of files, file lengths, lints switched on, citations, paths, pages written by the machine.
 
-use crate::{Fault, pages, root, walk};
+use crate::{Fault, circles, pages, root, walk};
 use serde_json::Value;
 use std::fs;
 use std::process::Command;
@@ -16,6 +16,7 @@ const TABLE: &str = "docs/architecture.md";
 /// Runs every check and lists all that is wrong.
 pub fn run() -> Result<(), Fault> {
     let mut faults = arrows()?;
+    faults.extend(circles::faults()?);
     let mut sources = vec![];
     for folder in ["crates", "xtask", "docs", "fixtures", ".github", ".ci"] {
         walk(&root().join(folder), &mut sources);
@@ -57,7 +58,8 @@ pub fn run() -> Result<(), Fault> {
 
 /// Every dependency that is not in the table.
 fn arrows() -> Result<Vec<String>, Fault> {
-    let table = Table::of(&fs::read_to_string(root().join(TABLE))?);
+    let page = fs::read_to_string(root().join(TABLE))?;
+    let table = Table::of(&page);
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--no-deps", "--format-version", "1"])
         .current_dir(root())

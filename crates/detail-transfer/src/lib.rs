@@ -28,22 +28,20 @@
 //! | `transfer.rs` | the whole way |
 //! | `relief.rs` | bases, details, frames |
 //! | `patch.rs` | a region and its surroundings as a mesh of its own |
-//! | `operator.rs`, `cholesky.rs` | the cotangent Laplacian, diffusion, sparse systems |
+//! | `operator.rs` | the cotangent Laplacian of a patch, diffusion |
 //! | `reconstruct.rs` | base and detail to surface |
 //! | `unstructured.rs` | vertex by vertex, by similar surroundings |
 //! | `coherence.rs` | copying on beside what a neighbour copied |
 //! | `fan.rs` | surroundings: geodesic fans |
-//! | `library.rs`, `tree.rs`, `jacobi.rs` | the most similar fan, by looking at all or by a tree |
+//! | `library.rs`, `tree.rs` | the most similar fan, by looking at all or by a tree |
 //! | `structured.rs`, `rectangle.rs` | patch by patch along a curve |
 //! | `spectrum.rs` | the source's strength at every scale |
 //! | `roughness.rs` | how rough a surface is, at which scales |
 //! | `error.rs` | what cannot be taken or given, and where |
 
-mod cholesky;
 mod coherence;
 mod error;
 mod fan;
-mod jacobi;
 mod library;
 mod operator;
 mod patch;

@@ -2,9 +2,10 @@
 
 use crate::Error;
 use mesh_core::{
-    Adjacency, Connected, FaceId, FaceMap, Faces, FloodParams, HalfedgeId, Positions, Seed, Source, SurfacePoint,
-    TriMesh, VertexId, flood,
+    Adjacency, Connected, FaceId, FaceMap, Faces, FloodParams, HalfedgeId, Seed, Source, SurfacePoint, TriMesh,
+    VertexId, flood,
 };
+use mesh_operators::Submesh;
 
 /// Some faces of a mesh, with their own numbers.
 pub(crate) struct Patch {
@@ -41,23 +42,12 @@ pub(crate) fn patch(
         taken[f] = true;
     }
     unpinch(mesh, &mut taken);
-    let faces: Vec<FaceId> = mesh.face_ids().filter(|&f| taken[f]).collect();
-    let mut names = vec![u32::MAX; mesh.vertex_count()];
-    for v in faces.iter().flat_map(|&f| mesh.corners(f)) {
-        names[v.index()] = 0;
-    }
-    let vertices: Vec<VertexId> = mesh.vertex_ids().filter(|v| names[v.index()] == 0).collect();
-    vertices.iter().enumerate().for_each(|(i, v)| names[v.index()] = i as u32);
-    for &v in &vertices {
-        let at = mesh.position(v);
+    let Submesh { mesh: own, vertices, faces } = Submesh::new(mesh, |f| taken[f]);
+    for (&v, &at) in vertices.iter().zip(&own.positions) {
         if !at.is_finite() || at.abs().max_element() > 1e100 {
             return Err(Error::NotFinite { vertex: v, at });
         }
     }
-    let own = TriMesh {
-        positions: vertices.iter().map(|&v| mesh.position(v)).collect(),
-        faces: faces.iter().map(|&f| mesh.corners(f).map(|v| VertexId(names[v.index()]))).collect(),
-    };
     let at = own.positions[0];
     // Faces of a manifold with all pinches filled are a manifold.
     let own = Connected::new(own).map_err(|_| Error::Singular { at })?;

@@ -1,10 +1,9 @@
 //! A surface put together again from base and detail, by least squares.
 
-use crate::cholesky::{Cholesky, Lower};
 use crate::error::Error;
-use crate::operator::HELD;
 use crate::relief::{Detail, Relief};
 use glam::DVec3;
+use mesh_operators::{Cholesky, LowerTriangle, Unknowns};
 
 /// Equations for the places of some vertices, prepared for many details.
 ///
@@ -14,8 +13,7 @@ use glam::DVec3;
 /// asked for as well, so that the surface passes the weld smoothly.
 pub struct Reconstruction<'a> {
     relief: &'a Relief,
-    unknowns: Vec<u32>,
-    free: Vec<usize>,
+    unknowns: Unknowns,
     /// Vertices whose bend is asked for.
     rows: Vec<usize>,
     factor: Option<Cholesky>,
@@ -32,34 +30,30 @@ impl<'a> Reconstruction<'a> {
     pub fn new(relief: &'a Relief, free: &[bool]) -> Result<Self, Error> {
         let (operator, rim) = (relief.operator(), relief.rim());
         let is_free = |i: usize| free.get(i) == Some(&true) && !rim[i];
-        let mut unknowns = vec![HELD; rim.len()];
-        let free: Vec<usize> = (0..rim.len()).filter(|&i| is_free(i)).collect();
-        free.iter().enumerate().for_each(|(k, &i)| unknowns[i] = k as u32);
-        let concerned = |i: usize| !rim[i] && operator.row(i).any(|(j, _)| unknowns[j] != HELD);
+        let unknowns = Unknowns::new(rim.len(), is_free);
+        let concerned = |i: usize| !rim[i] && operator.row(i).any(|(j, _)| unknowns.number(j).is_some());
         let rows: Vec<usize> = (0..rim.len()).filter(|&i| concerned(i)).collect();
-        let mut out = Self { relief, unknowns, free, rows, factor: None };
-        if !out.free.is_empty() {
-            let at = relief.base().mesh().positions[out.free[0]];
-            out.factor = Some(out.squared().factor().ok_or(Error::Singular { at })?);
+        let mut out = Self { relief, unknowns, rows, factor: None };
+        if let Some(&first) = out.unknowns.free().first() {
+            let at = relief.base().mesh().positions[first as usize];
+            out.factor = Some(Cholesky::new(&out.squared()).map_err(|_| Error::Singular { at })?);
         }
         Ok(out)
     }
 
     /// The free vertices' part of C A⁻¹ C + A/ℓ⁴, C restricted to the rows asked for.
-    fn squared(&self) -> Lower {
+    fn squared(&self) -> LowerTriangle<f64> {
         let operator = self.relief.operator();
-        let mut asked = vec![false; self.unknowns.len()];
+        let mut asked = vec![false; self.relief.rim().len()];
         self.rows.iter().for_each(|&i| asked[i] = true);
-        let mut lower = Lower::default();
-        let mut sums = vec![0.0; self.free.len()];
-        let mut touched: Vec<usize> = vec![];
-        for (k, &j) in self.free.iter().enumerate() {
-            lower.begin();
+        let mut lower = LowerTriangle::default();
+        let mut sums = vec![0.0; self.unknowns.free().len()];
+        let (mut touched, mut column): (Vec<u32>, Vec<(u32, f64)>) = (vec![], vec![]);
+        for (k, j) in self.free().enumerate() {
             for (i, c) in operator.row(j).filter(|&(i, _)| asked[i]) {
                 for (m, d) in operator.row(i) {
-                    let row = self.unknowns[m];
-                    if row != HELD && row as usize >= k {
-                        touched.push(row as usize);
+                    if let Some(row) = self.unknowns.number(m).filter(|&row| row as usize >= k) {
+                        touched.push(row);
                         sums[row as usize] += c * d / operator.area(i);
                     }
                 }
@@ -67,13 +61,15 @@ impl<'a> Reconstruction<'a> {
             sums[k] += self.pull(j);
             touched.sort_unstable();
             touched.dedup();
-            for &row in &touched {
-                lower.push(row, sums[row]);
-                sums[row] = 0.0;
-            }
-            touched.clear();
+            column.extend(touched.drain(..).map(|row| (row, std::mem::take(&mut sums[row as usize]))));
+            lower.column(&column);
+            column.clear();
         }
         lower
+    }
+
+    fn free(&self) -> impl Iterator<Item = usize> + '_ {
+        self.unknowns.free().iter().map(|&i| i as usize)
     }
 
     /// The weight of a vertex's offset.
@@ -88,23 +84,23 @@ impl<'a> Reconstruction<'a> {
     pub fn solve(&self, details: &[Detail]) -> Vec<DVec3> {
         let (relief, operator) = (self.relief, self.relief.operator());
         let detail = |i: usize| details.get(i).copied().unwrap_or_default();
-        let mut bends = vec![DVec3::ZERO; self.unknowns.len()];
+        let mut bends = vec![DVec3::ZERO; relief.rim().len()];
         for &i in &self.rows {
             bends[i] = relief.frames()[i].world(detail(i).bend);
         }
-        let wanted: Vec<DVec3> = self.free.iter().map(|&i| relief.frames()[i].world(detail(i).offset)).collect();
+        let wanted: Vec<DVec3> = self.free().map(|i| relief.frames()[i].world(detail(i).offset)).collect();
         let mut offsets = relief.offsets().to_vec();
-        self.free.iter().zip(&wanted).for_each(|(&i, d)| offsets[i] = *d);
+        self.free().zip(&wanted).for_each(|(i, d)| offsets[i] = *d);
         let Some(factor) = &self.factor else { return self.places(&offsets) };
-        let mut missing = vec![DVec3::ZERO; self.unknowns.len()];
+        let mut missing = vec![DVec3::ZERO; relief.rim().len()];
         for _ in 0..REFINEMENTS {
             self.rows.iter().for_each(|&i| missing[i] = bends[i] - operator.laplacian(&offsets, i));
-            let right = self.free.iter().zip(&wanted).map(|(&j, d)| {
+            let right = self.free().zip(&wanted).map(|(j, d)| {
                 let pushed: DVec3 = operator.row(j).map(|(i, c)| c * missing[i]).sum();
                 pushed + self.pull(j) * (*d - offsets[j])
             });
             let right: Vec<DVec3> = right.collect();
-            self.free.iter().zip(factor.solve(&right)).for_each(|(&j, step)| offsets[j] += step);
+            self.free().zip(factor.solve_points(&right)).for_each(|(j, step)| offsets[j] += step);
         }
         self.places(&offsets)
     }

@@ -8,6 +8,7 @@ use mesh_core::{
     Adjacency, Connected, FaceId, FaceMap, Faces, Positions, TriMesh, VertexId, Watch, centroid, triangle_normal,
     vertex_normals,
 };
+use mesh_operators::Submesh;
 use std::f64::consts::TAU;
 
 /// How a base surface is found.
@@ -234,10 +235,8 @@ impl Relief {
     }
 
     fn handles(&self) -> usize {
-        let inside = |f: &FaceId| self.inside[f.index()];
-        let faces = self.base.face_ids().filter(inside).map(|f| self.base.corners(f));
-        let region = TriMesh { positions: self.base.mesh().positions.clone(), faces: faces.collect() };
-        let genus = Connected::new(region).map_or(0, |m| mesh_core::topology(&m).genus());
+        let region = Submesh::new(&self.base, |f| self.inside[f.index()]);
+        let genus = Connected::new(region.mesh).map_or(0, |m| mesh_core::topology(&m).genus());
         usize::try_from(genus).unwrap_or(0)
     }
 

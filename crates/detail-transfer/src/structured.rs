@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::rectangle::{Anchor, Rectangle, anchors, length};
 use crate::relief::{Detail, Relief};
 use glam::{DVec2, DVec3};
-use mesh_core::Watch;
+use mesh_core::{Watch, distance_to_segments, open_segments};
 use rayon::prelude::*;
 
 /// A governing curve and the band that follows it.
@@ -106,11 +106,7 @@ pub fn fill_structured(
 
 /// Twice the greatest distance of a vertex without detail from the curve, and a little more.
 fn whole_width(target: &Relief, details: &[Option<Detail>], curve: &[DVec3]) -> f64 {
-    let to_line = |p: DVec3, a: DVec3, b: DVec3| {
-        let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-        p.distance(if t.is_finite() { a.lerp(b, t) } else { a })
-    };
-    let distance = |p: DVec3| curve.windows(2).map(|w| to_line(p, w[0], w[1])).fold(f64::INFINITY, f64::min);
+    let distance = |p: DVec3| distance_to_segments(p, open_segments(curve));
     let places = target.base().mesh().positions.iter().zip(details).filter(|(_, d)| d.is_none());
     2.1 * places.map(|(&p, _)| distance(p)).fold(0.0, f64::max)
 }

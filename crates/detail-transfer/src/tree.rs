@@ -1,6 +1,5 @@
 //! A k-d tree over vectors, in their principal axes.
 
-use crate::jacobi::eigenvectors;
 use rayon::prelude::*;
 
 /// Principal axes kept. Distances in them never exceed the vectors' own.
@@ -135,7 +134,7 @@ fn principal_axes(count: u32, numbers: usize, read: &impl Fn(u32, &mut [f32])) -
             covariance[i * numbers + j] = covariance[j * numbers + i];
         }
     }
-    let mut axes = eigenvectors(covariance, numbers);
+    let mut axes = mesh_operators::eigenvectors(&covariance, numbers);
     axes.truncate(AXES);
     axes
 }

@@ -2,8 +2,7 @@
 
 use detail_transfer::{BaseParams, Detail, Exemplar, FanLength, Params, Relief, Search, fill_unstructured, transfer};
 use glam::DVec3;
-use mesh_core::{Connected, FaceMap, Faces, TriMesh, Watch, centroid, shapes};
-use std::time::Instant;
+use mesh_core::{Connected, FaceMap, Faces, Stopwatch, TriMesh, Watch, centroid, shapes};
 
 /// Band-limited noise: waves of one length in all directions.
 fn noise(p: DVec3, wavelength: f64, seed: u32) -> f64 {
@@ -37,7 +36,7 @@ fn time_ten_thousand() {
     let middle = |f| centroid(mesh.mesh().triangle(f));
     let target: FaceMap<bool> = mesh.face_ids().map(|f| middle(f).x < -0.2).collect::<Vec<_>>().into();
     let source: FaceMap<bool> = mesh.face_ids().map(|f| middle(f).x > 0.22).collect::<Vec<_>>().into();
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let params = BaseParams::new(0.2);
     let [mut a, b] = [&target, &source].map(|r| Relief::encode(&mesh, r, &params, &Watch::default()).unwrap());
     println!("encode {:?}", start.elapsed());
@@ -46,7 +45,7 @@ fn time_ten_thousand() {
     println!("to fill {}, source {}", free.iter().filter(|f| **f).count(), b.interior().iter().filter(|f| **f).count());
     let sources = [(&b, vec![])];
     a.weigh(&sources);
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let exemplar = Exemplar { mesh: &mesh, inside: &source };
     let params = Params { wavelength: Some(0.2), fan: FanLength::Units(0.03), ..Params::default() };
     transfer(&mesh, &target, &[exemplar], &params, &Watch::default()).unwrap();
@@ -54,7 +53,7 @@ fn time_ten_thousand() {
     let mut both = vec![];
     for search in [Search::Indexed, Search::Exhaustive] {
         let mut details = known.clone();
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let filled = fill_unstructured(&a, &mut details, &sources, 0.03, search, &Watch::default()).unwrap();
         println!("jumps {}", filled.choices.iter().filter(|c| c.jump).count());
         println!("{search:?} {:?} {}", start.elapsed(), filled.choices.len());

@@ -302,11 +302,8 @@ mod tests {
     /// Every crossed edge is on exactly one curve, for all sign patterns and many magnitudes.
     #[test]
     fn all_patterns_have_the_topology_of_the_trilinear_field() {
-        let mut state = 1u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut rng = fastrand::Rng::with_seed(1);
+        let mut random = || rng.f64();
         for mask in 0..256 {
             for _ in 0..24 {
                 let v: [f64; 8] =

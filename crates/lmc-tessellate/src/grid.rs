@@ -4,8 +4,7 @@ use crate::cell::signs;
 use crate::error::Error;
 use glam::{DVec3, IVec3};
 use mesh_core::{Bounds, Watch};
-use std::collections::{HashMap, HashSet};
-use std::hash::{BuildHasherDefault, Hasher};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A scalar field, sampled at many points at once: `field(points, values)` fills `values`, negative inside.
 pub trait Field: Sync {
@@ -50,29 +49,10 @@ pub(crate) fn key(k: IVec3) -> u64 {
 }
 
 /// A hash map from packed keys. Looked up only, never iterated.
-pub(crate) type KeyMap<T> = HashMap<u64, T, BuildHasherDefault<Mix>>;
+pub(crate) type KeyMap<T> = FxHashMap<u64, T>;
 
 /// A set of packed keys.
-pub(crate) type KeySet = HashSet<u64, BuildHasherDefault<Mix>>;
-
-/// Mixes one integer.
-#[derive(Default)]
-pub(crate) struct Mix(u64);
-
-impl Hasher for Mix {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-    fn write(&mut self, bytes: &[u8]) {
-        for &b in bytes {
-            self.write_u64(self.0 ^ u64::from(b));
-        }
-    }
-    fn write_u64(&mut self, x: u64) {
-        let x = (x ^ x >> 32).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        self.0 = x ^ x >> 29;
-    }
-}
+pub(crate) type KeySet = FxHashSet<u64>;
 
 /// The cells that a zero set passes through, and the field at their corners.
 #[derive(Default)]

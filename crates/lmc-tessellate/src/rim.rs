@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::grid::{Field, Grid, KeyMap, key};
 use glam::DVec3;
-use mesh_core::{Adjacency, HalfedgeId, Positions, face_normal};
+use mesh_core::{Adjacency, HalfedgeId, Positions, closest_on_segment, face_normal};
 
 /// One boundary loop of a part: a closed curve with the part on its left, seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -129,10 +129,8 @@ impl Rims {
         let mut best: Option<Near> = None;
         self.visit(p, |i| {
             let (s, t) = (&self.samples[i as usize], &self.samples[self.samples[i as usize].next as usize]);
-            let edge = t.point - s.point;
-            let at = ((p - s.point).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
-            let at = if at.is_nan() { 0.0 } else { at };
-            let offset = p - (s.point + at * edge);
+            let (at, place) = closest_on_segment(p, [s.point, t.point]);
+            let offset = p - place;
             let distance = offset.length();
             if distance > self.reach || best.is_some_and(|b| b.distance <= distance) {
                 return;

@@ -134,11 +134,8 @@ mod tests {
     /// edge has its two triangles, and each surface is a disc or a tunnel by its Euler characteristic.
     #[test]
     fn tilings_are_manifold_with_the_right_boundary() {
-        let mut state = 7u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut rng = fastrand::Rng::with_seed(7);
+        let mut random = || rng.f64();
         let (mut tunnels, mut centers) = (0, 0);
         for mask in 0..256 {
             for _ in 0..200 {

@@ -1,9 +1,10 @@
 //! Neighbourhoods of a mesh that was made from connected ones: what whole faces had beside them they have again, and only
 //! the rest is matched anew.
 
-use crate::connected::{Connected, NotManifold};
+use crate::connected::Connected;
 use crate::corner_table::{NONE, distinct, fans, in_range};
 use crate::ids::{FaceId, HalfedgeId, VertexId};
+use crate::not_manifold::NotManifold;
 use crate::origin::{FaceOrigin, Origins, VertexOrigin};
 use crate::traits::{Adjacency, Faces, Positions};
 use rayon::prelude::*;
@@ -152,11 +153,8 @@ mod tests {
     /// A mesh made from two bodies: some faces left out, their openings perhaps closed again by faces around a new vertex,
     /// faces in any order, and perhaps damaged.
     fn made(parts: &[&Connected<TriMesh>], seed: u64, out: usize, close: bool, damage: usize) -> (TriMesh, Origins) {
-        let mut state = seed | 1;
-        let mut random = |n: usize| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) as usize % n
-        };
+        let mut rng = fastrand::Rng::with_seed(seed);
+        let mut random = |n: usize| rng.usize(..n);
         let (mut mesh, mut vertices, mut faces) = (TriMesh::default(), vec![], vec![]);
         for (p, part) in parts.iter().enumerate() {
             let (first, p) = (mesh.positions.len() as u32, p as u32);

@@ -1,8 +1,8 @@
 //! Matching of opposite halfedges, in parallel, and the one fan of each vertex.
 
-use crate::connected::NotManifold;
 use crate::edge_groups::{range_len, visit_edges};
 use crate::ids::{FaceId, HalfedgeId, VertexId};
+use crate::not_manifold::NotManifold;
 use crate::traits::{Faces, Positions};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering};

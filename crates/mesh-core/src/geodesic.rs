@@ -296,11 +296,8 @@ mod tests {
     /// A unit square of n × n cells with its inner vertices shaken, so that obtuse triangles abound.
     fn shaken(n: u32, amount: f64) -> Connected<TriMesh> {
         let mut mesh = shapes::grid(1.0, 1.0, n, n);
-        let mut state = 1u64;
-        let mut noise = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 40) as f64 / (1u64 << 24) as f64 - 0.5
-        };
+        let mut rng = fastrand::Rng::with_seed(1);
+        let mut noise = || rng.f64() - 0.5;
         for p in &mut mesh.positions {
             if p.x.abs() < 0.499 && p.y.abs() < 0.499 {
                 *p += amount / f64::from(n) * DVec3::new(noise(), noise(), 0.0);

@@ -1,8 +1,6 @@
-//! The formats and their names.
+//! The formats.
 
-use crate::error::Error;
 use std::fmt;
-use std::path::Path;
 
 /// A mesh file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -40,28 +38,6 @@ impl Format {
         }
     }
 
-    /// The format called `name`, in any case, with or without a leading dot.
-    ///
-    /// # Errors
-    /// [`Error::UnknownFormat`].
-    pub fn from_name(name: &str) -> Result<Self, Error> {
-        let bare = name.strip_prefix('.').unwrap_or(name);
-        Self::ALL
-            .into_iter()
-            .find(|format| format.name().eq_ignore_ascii_case(bare))
-            .ok_or_else(|| Error::UnknownFormat { name: name.to_owned() })
-    }
-
-    /// The format that the extension of `path` names.
-    ///
-    /// # Errors
-    /// [`Error::UnknownFormat`].
-    pub fn from_path(path: &Path) -> Result<Self, Error> {
-        let extension = path.extension().map(|e| e.to_string_lossy().into_owned());
-        Self::from_name(&extension.unwrap_or_default())
-            .map_err(|_| Error::UnknownFormat { name: path.display().to_string() })
-    }
-
     /// Whether positions keep every bit of an f64. Where not, see [`crate::as_written`].
     pub const fn is_lossless(self) -> bool {
         !matches!(self, Self::Stl | Self::Glb | Self::Gltf)
@@ -71,12 +47,5 @@ impl Format {
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
-    }
-}
-
-impl std::str::FromStr for Format {
-    type Err = Error;
-    fn from_str(name: &str) -> Result<Self, Error> {
-        Self::from_name(name)
     }
 }

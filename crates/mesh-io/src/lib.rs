@@ -15,8 +15,9 @@
 //! | file | holds |
 //! |---|---|
 //! | `model.rs` | [`Model`]: triangles with corner attributes, groups, materials, polygons, notes |
-//! | `format.rs`, `error.rs`, `notes.rs` | names of formats; what went wrong, or was changed, and where |
-//! | `read.rs`, `write.rs` | from files to models and back; files appear whole or not at all |
+//! | `format.rs`, `named.rs`, `error.rs`, `notes.rs` | formats and their names; what went wrong, or was changed, and where |
+//! | `read.rs`, `write.rs` | from files to models and back |
+//! | `atomic.rs` | files that appear together or not at all |
 //! | `folder.rs` | references to side files that are safe to follow |
 //! | `obj/`, `ply/`, `off/`, `stl.rs`, `gltf/`, `threemf/` | one format each, reader and writer; curves as OBJ lines |
 //! | `text.rs`, `number.rs` | tokens of text files; numbers as text, bit for bit |
@@ -24,12 +25,14 @@
 //! | `weld.rs` | merging vertices at the same place |
 //! | `encode.rs`, `outline.rs`, `vary.rs` | what writers share: pieces and side files, polygons, how finely attributes vary |
 
+mod atomic;
 mod encode;
 mod error;
 mod folder;
 mod format;
 mod gltf;
 mod model;
+mod named;
 mod notes;
 mod number;
 mod obj;
@@ -46,6 +49,7 @@ mod vary;
 mod weld;
 mod write;
 
+pub use atomic::AtomicFiles;
 pub use error::{At, Error};
 pub use format::Format;
 pub use model::{Groups, Material, Materials, Model, Note, Polygons, Texture, TextureSource};

@@ -1,5 +1,6 @@
 //! From a model to bytes and files. A file appears whole or not at all.
 
+use crate::atomic::AtomicFiles;
 use crate::encode::{Content, Encoded, Target};
 use crate::error::Error;
 use crate::format::Format;
@@ -11,7 +12,6 @@ use rayon::prelude::*;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What [`write()`] put on disk.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,7 +45,7 @@ pub fn write_as(model: &Model, path: &Path, format: Format) -> Result<Written, E
     let real = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let encoded = encode(model, format, Some(&Target::of(path)))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut staged = Staged::default();
+    let mut staged = AtomicFiles::default();
     for side in &encoded.sides {
         let target = folder.join(&side.name);
         match &side.content {
@@ -124,69 +124,4 @@ fn check_positions(mesh: &TriMesh, format: Format) -> Result<(), Error> {
     let place = mesh.positions[bad];
     let reason = if place.is_finite() { "it holds numbers up to 3.4e38" } else { "it holds finite numbers only" };
     Err(Error::Unrepresentable { vertex: VertexId::from(bad), place, format, reason })
-}
-
-/// Files written beside their targets and not yet in place. What is not committed is removed.
-#[derive(Default)]
-struct Staged {
-    files: Vec<(PathBuf, PathBuf)>, // (temporary, target)
-    bytes: u64,
-}
-
-impl Staged {
-    fn add(&mut self, target: &Path, fill: impl FnOnce(&mut fs::File) -> io::Result<()>) -> Result<(), Error> {
-        static COUNTER: AtomicU64 = AtomicU64::new(0);
-        let unwritable = |source| Error::Unwritable { path: target.to_owned(), source };
-        let known = fs::metadata(target);
-        if known.as_ref().is_ok_and(fs::Metadata::is_dir) {
-            return Err(unwritable(io::Error::from(io::ErrorKind::IsADirectory)));
-        }
-        if known.is_ok_and(|m| !m.is_file()) {
-            let mut file = fs::OpenOptions::new().write(true).open(target).map_err(unwritable)?;
-            return fill(&mut file).map_err(unwritable);
-        }
-        let name = target.file_name().ok_or_else(|| unwritable(io::Error::from(io::ErrorKind::InvalidFilename)))?;
-        let number = COUNTER.fetch_add(1, Ordering::Relaxed);
-        let temporary =
-            target.with_file_name(format!(".{}.{}-{number}.part", name.to_string_lossy(), std::process::id()));
-        let mut file = fs::OpenOptions::new().write(true).create_new(true).open(&temporary).map_err(unwritable)?;
-        self.files.push((temporary, target.to_owned()));
-        fill(&mut file).map_err(unwritable)?;
-        self.bytes += file.metadata().map_err(unwritable)?.len();
-        Ok(())
-    }
-
-    /// Renames everything into place, in order. If one rename fails, the targets renamed before it get their old
-    /// contents back.
-    fn commit(mut self) -> Result<(Vec<PathBuf>, u64), Error> {
-        let files = std::mem::take(&mut self.files);
-        let mut backups: Vec<Option<PathBuf>> = vec![];
-        for (i, (temporary, target)) in files.iter().enumerate() {
-            // Only needed if something can still fail after this rename.
-            let backup = (i + 1 < files.len()).then(|| temporary.with_extension("old"));
-            backups.push(backup.filter(|b| fs::hard_link(target, b).is_ok()));
-            if let Err(source) = fs::rename(temporary, target) {
-                for ((_, target), backup) in files[..i].iter().zip(&backups) {
-                    let _ = match backup {
-                        Some(backup) => fs::rename(backup, target),
-                        None => fs::remove_file(target),
-                    };
-                }
-                let path = target.clone();
-                backups.iter().flatten().for_each(|b| drop(fs::remove_file(b)));
-                self.files = files;
-                return Err(Error::Unwritable { path, source });
-            }
-        }
-        backups.iter().flatten().for_each(|b| drop(fs::remove_file(b)));
-        Ok((files.into_iter().map(|(_, target)| target).collect(), self.bytes))
-    }
-}
-
-impl Drop for Staged {
-    fn drop(&mut self) {
-        for (temporary, _) in &self.files {
-            let _ = fs::remove_file(temporary);
-        }
-    }
 }

@@ -1,15 +1,12 @@
 //! The tree, its construction and the checks of its input.
 
 use crate::frame::Frame;
-use crate::order::{along_morton_curve, index_of, leaves};
+use crate::order::{CHUNK, along_morton_curve, index_of, leaves};
 use glam::DVec3;
 use mesh_core::{Bounds, FaceId, Faces, Positions, VertexId};
 use obvhs::bvh2::node::Bvh2Node;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
-
-/// Faces per parallel task; a constant, so that nothing depends on the number of threads.
-pub(crate) const CHUNK: usize = 1 << 12;
 
 /// A bounding-volume hierarchy over the triangles of a mesh.
 ///

@@ -4,13 +4,13 @@
 //! vertex is pinned, so that nothing but the surface decides the result. With z complex the energy is one Hermitian
 //! matrix of n rows, whose smallest eigenvector but the constant is found by inverse iteration.
 
-use crate::cholesky::{Cholesky, Lower};
 use crate::distortion::{check, doubled_area, face_corners};
 use crate::error::Error;
 use crate::harmonic::{Pull, Weights, for_neighbours, is_usable};
-use faer::c64;
 use glam::DVec2;
 use mesh_core::{Adjacency, Positions, VertexId, VertexMap, area, boundary_loops, topology};
+use mesh_operators::{HermitianCholesky, LowerTriangle};
+use num_complex::Complex64;
 
 /// Flattens a disc: angles kept as far as its curvature lets them, total area kept, centred at the boundary's middle,
 /// long axis along x.
@@ -37,8 +37,8 @@ pub fn map_free<M: Adjacency + Positions + Sync>(mesh: &M) -> Result<VertexMap<D
     (0..).zip(&used).for_each(|(i, &v)| index[v] = i);
     let rim: Vec<usize> = loops[0].iter().map(|&h| index[mesh.tail(h)] as usize).collect();
     let lower = energy(mesh, &used, &index);
-    let factor =
-        Cholesky::complex(&lower).map_err(|i| Error::Singular { vertex: used[i], at: mesh.position(used[i]) })?;
+    let singular = |vertex| Error::Singular { vertex, at: mesh.position(vertex) };
+    let factor = HermitianCholesky::new(&lower).map_err(|e| singular(used[e.unknown]))?;
     let z = smallest(&factor, used.len(), &rim);
     let mut map: VertexMap<DVec2> = VertexMap::filled(mesh.vertex_count(), DVec2::ZERO);
     used.iter().zip(&z).for_each(|(&v, z)| map[v] = DVec2::new(z.re, z.im));
@@ -52,15 +52,19 @@ pub fn map_free<M: Adjacency + Positions + Sync>(mesh: &M) -> Result<VertexMap<D
 const SHIFT: f64 = 1e-9;
 
 /// Twice the conformal energy, as a matrix, slightly shifted.
-fn energy<M: Adjacency + Positions + Sync>(mesh: &M, used: &[VertexId], index: &VertexMap<u32>) -> Lower<c64> {
+fn energy<M: Adjacency + Positions + Sync>(
+    mesh: &M,
+    used: &[VertexId],
+    index: &VertexMap<u32>,
+) -> LowerTriangle<Complex64> {
     let pull = Pull::of(mesh, Weights::Cotangent);
-    let mut lower = Lower { starts: Vec::with_capacity(used.len() + 1), rows: Vec::new(), values: Vec::new() };
-    let mut column: Vec<(u32, c64)> = Vec::new();
+    let mut lower = LowerTriangle::default();
+    let mut column: Vec<(u32, Complex64)> = Vec::new();
     let mut trace = 0.0;
     for (i, &v) in (0..).zip(used) {
-        lower.starts.push(lower.rows.len() as u32);
         let mut diagonal = 0.0;
         column.clear();
+        column.push((i, Complex64::ZERO));
         for_neighbours(mesh, v, |h, w| {
             let weight = pull.along(mesh, h);
             diagonal += weight;
@@ -72,49 +76,46 @@ fn energy<M: Adjacency + Positions + Sync>(mesh: &M, used: &[VertexId], index: &
                     (true, false) => 0.5,
                     (false, _) => 0.0,
                 };
-                column.push((j, c64::new(-weight, area)));
+                column.push((j, Complex64::new(-weight, area)));
             }
         });
+        column[0].1 = Complex64::new(diagonal, 0.0);
         column.sort_unstable_by_key(|c| c.0);
         trace += diagonal;
-        lower.rows.push(i);
-        lower.values.push(c64::new(diagonal, 0.0));
-        for &(row, value) in &column {
-            lower.rows.push(row);
-            lower.values.push(value);
-        }
+        lower.column(&column);
     }
-    lower.starts.push(lower.rows.len() as u32);
     let shift = SHIFT * trace / used.len() as f64;
     for i in 0..used.len() {
-        lower.values[lower.starts[i] as usize].re += shift;
+        if let Some(diagonal) = lower.diagonal_mut(i) {
+            diagonal.re += shift;
+        }
     }
     lower
 }
 
 /// The eigenvector of the smallest energy for its size on the boundary, constants apart.
-fn smallest(factor: &Cholesky<c64>, n: usize, rim: &[usize]) -> Vec<c64> {
+fn smallest(factor: &HermitianCholesky, n: usize, rim: &[usize]) -> Vec<Complex64> {
     // Any start that is no constant will do; the circle is the answer where the disc is round.
-    let mut z = vec![c64::new(0.0, 0.0); n];
+    let mut z = vec![Complex64::ZERO; n];
     for (k, &i) in rim.iter().enumerate() {
         let angle = std::f64::consts::TAU * k as f64 / rim.len() as f64;
-        z[i] = c64::new(angle.cos(), angle.sin());
+        z[i] = Complex64::new(angle.cos(), angle.sin());
     }
     for _ in 0..MOST_STEPS {
-        let before: Vec<c64> = rim.iter().map(|&i| z[i]).collect();
-        let mut next = vec![c64::new(0.0, 0.0); n];
+        let before: Vec<Complex64> = rim.iter().map(|&i| z[i]).collect();
+        let mut next = vec![Complex64::ZERO; n];
         for &i in rim {
             next[i] = z[i];
         }
-        factor.solve(&mut next, 1);
-        let mean = rim.iter().map(|&i| next[i]).sum::<c64>() / rim.len() as f64;
+        factor.solve(&mut next);
+        let mean = rim.iter().map(|&i| next[i]).sum::<Complex64>() / rim.len() as f64;
         for x in &mut next {
             *x -= mean;
         }
         let norm = rim.iter().map(|&i| next[i].norm_sqr()).sum::<f64>().sqrt();
         // Each step may turn z by a phase; compare without it.
-        let overlap: c64 = rim.iter().zip(&before).map(|(&i, b)| b.conj() * next[i]).sum();
-        let phase = if overlap.norm() > 0.0 { overlap / overlap.norm() } else { c64::new(1.0, 0.0) };
+        let overlap: Complex64 = rim.iter().zip(&before).map(|(&i, b)| b.conj() * next[i]).sum();
+        let phase = if overlap.norm() > 0.0 { overlap / overlap.norm() } else { Complex64::new(1.0, 0.0) };
         for x in &mut next {
             *x /= phase * norm;
         }
@@ -135,7 +136,7 @@ fn resize<M: Adjacency + Positions + Sync>(mesh: &M, map: &mut VertexMap<DVec2>)
     let mapped: f64 = mesh.face_ids().map(|f| 0.5 * doubled_area(mesh.corners(f).map(|v| map[v]))).sum();
     let scale = (area(mesh) / mapped.abs()).sqrt();
     let used = || mesh.vertex_ids().filter(|&v| mesh.outgoing(v).is_some());
-    let moment = used().map(|v| c64::new(map[v].x, map[v].y)).map(|z| z * z).sum::<c64>();
+    let moment = used().map(|v| Complex64::new(map[v].x, map[v].y)).map(|z| z * z).sum::<Complex64>();
     let turn = DVec2::from_angle(-0.5 * moment.im.atan2(moment.re));
     for v in used() {
         map[v] = scale * turn.rotate(map[v]);

@@ -1,12 +1,10 @@
 //! The Laplacian with fixed vertices, factorised once for many right-hand sides.
 
-use crate::cholesky::{Cholesky, Lower};
 use crate::distortion::{check, face_corners};
 use crate::error::Error;
 use glam::{DVec2, DVec3};
-use mesh_core::{
-    Adjacency, CornerMap, Faces, HalfedgeId, Positions, VertexId, VertexMap, cotangent_weight, cotangents,
-};
+use mesh_core::{Adjacency, CornerMap, Faces, HalfedgeId, Positions, VertexId, VertexMap};
+use mesh_operators::{Cholesky, LowerTriangle, cotangent_weight, cotangents};
 
 /// How strongly an edge pulls its ends together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,7 +21,7 @@ pub enum Weights {
 /// A prepared solver: values at fixed vertices in, harmonic values at all vertices out.
 #[derive(Debug)]
 pub struct Harmonic {
-    factor: Option<Cholesky<f64>>,
+    factor: Option<Cholesky>,
     /// Unknown of each vertex; fixed ones and those without faces have none.
     unknowns: VertexMap<Node>,
     free: Vec<VertexId>,
@@ -135,7 +133,7 @@ impl Harmonic {
             }
         }
         if let Some(factor) = &self.factor {
-            factor.solve_real(&mut x, K);
+            factor.solve(&mut x);
         }
         let value = |node: &Node| match *node {
             Node::Absent => [0.0; K],
@@ -219,17 +217,14 @@ fn assemble<M: Adjacency + Positions + Sync>(
     unknowns: &VertexMap<Node>,
     free: &[VertexId],
     pull: &Pull,
-) -> Result<(Lower<f64>, Pulls), Error> {
-    let n = free.len();
-    let mut lower = Lower { starts: Vec::with_capacity(n + 1), rows: Vec::new(), values: Vec::new() };
-    lower.rows.reserve(4 * n);
-    lower.values.reserve(4 * n);
+) -> Result<(LowerTriangle<f64>, Pulls), Error> {
+    let mut lower = LowerTriangle::default();
     let mut pulls = Vec::new();
     let mut column: Vec<(u32, f64)> = Vec::new();
     for (i, &v) in (0..).zip(free) {
-        lower.starts.push(lower.rows.len() as u32);
         let mut diagonal = 0.0;
         column.clear();
+        column.push((i, 0.0));
         for_neighbours(mesh, v, |h, w| {
             let pull = pull.along(mesh, h);
             diagonal += pull;
@@ -242,18 +237,14 @@ fn assemble<M: Adjacency + Positions + Sync>(
         if diagonal.is_nan() || diagonal <= 0.0 {
             return Err(Error::Loose { vertex: v, at: mesh.position(v) });
         }
+        column[0].1 = diagonal;
         column.sort_unstable_by_key(|c| c.0);
-        lower.rows.push(i);
-        lower.values.push(diagonal);
-        for &(row, value) in &column {
-            lower.rows.push(row);
-            lower.values.push(value);
-        }
+        lower.column(&column);
     }
-    lower.starts.push(lower.rows.len() as u32);
     Ok((lower, pulls))
 }
 
-fn factorise<M: Positions>(mesh: &M, lower: &Lower<f64>, free: &[VertexId]) -> Result<Cholesky<f64>, Error> {
-    Cholesky::real(lower).map_err(|i| Error::Singular { vertex: free[i], at: mesh.position(free[i]) })
+fn factorise<M: Positions>(mesh: &M, lower: &LowerTriangle<f64>, free: &[VertexId]) -> Result<Cholesky, Error> {
+    let singular = |vertex| Error::Singular { vertex, at: mesh.position(vertex) };
+    Cholesky::new(lower).map_err(|e| singular(free[e.unknown]))
 }

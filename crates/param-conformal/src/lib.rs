@@ -27,14 +27,10 @@
 //! | `free.rs` | discs with a free boundary |
 //! | `relax.rs` | smoothing in the plane for better triangles elsewhere |
 //! | `distortion.rs` | angles, areas and flips of a map |
-//! | `cholesky.rs` | sparse Cholesky factors, the same bits for any thread count |
-//! | `factor.rs` | the same for other crates' matrices |
 //! | `error.rs` | what cannot be mapped, and where |
 
-mod cholesky;
 mod distortion;
 mod error;
-mod factor;
 mod free;
 mod harmonic;
 mod rectangle;
@@ -43,7 +39,6 @@ mod ring;
 
 pub use distortion::Distortion;
 pub use error::Error;
-pub use factor::SparseFactor;
 pub use free::map_free;
 pub use harmonic::{Harmonic, Weights, map_fixed};
 pub use rectangle::{Outline, RingMap, Seam, map_ring, map_ring_with};

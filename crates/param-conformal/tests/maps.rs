@@ -2,9 +2,9 @@
 
 use glam::{DQuat, DVec2, DVec3};
 use mesh_core::{
-    Adjacency, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, boundary_loops, cotangent_weight,
-    cotangents, shapes,
+    Adjacency, Connected, FaceId, Faces, HalfedgeId, Positions, TriMesh, VertexId, boundary_loops, shapes,
 };
+use mesh_operators::{cotangent_weight, cotangents};
 use param_conformal::{
     CutRing, Distortion, Error, Harmonic, Outline, RelaxParams, Ring, RingMap, Seam, Weights, map_fixed, map_free,
     map_ring, map_ring_with, relax,

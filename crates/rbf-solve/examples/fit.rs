@@ -3,9 +3,9 @@
 //! point. Prints seconds, the residual, and how far the first thousand values are from the sum over all centres, as JSON.
 
 use glam::DVec3;
+use mesh_core::Stopwatch;
 use rbf_solve::{Constraint, Field, Kernel, Params, Solver};
 use std::error::Error;
-use std::time::Instant;
 
 /// From here on the iterative solver is the faster one.
 const MANY: usize = 4000;
@@ -19,10 +19,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         numbers(constraints)?.chunks_exact(4).map(|c| Constraint::off_surface(place(c), c[3])).collect();
     let points: Vec<DVec3> = numbers(points)?.chunks_exact(3).map(place).collect();
     let solver = if constraints.len() < MANY { Solver::Dense } else { Solver::Iterative { tolerance: 1e-6 } };
-    let since = Instant::now();
+    let since = Stopwatch::start();
     let field = Field::fit(&constraints, &Params { kernel, solver, ..Params::default() }, &|_| true)?;
     let fit = since.elapsed().as_secs_f64();
-    let since = Instant::now();
+    let since = Stopwatch::start();
     let mut values = vec![0.0; points.len()];
     field.many_values(&points, &mut values);
     let evaluate = since.elapsed().as_secs_f64();

@@ -9,7 +9,6 @@ use crate::far::Plan;
 use crate::iterate::{self, Rescue};
 use crate::kernel::Kernel;
 use crate::params::{Params, Solver};
-use crate::patches::Patches;
 use crate::sum::Sum;
 use crate::translations::{Translations, degree};
 use glam::DVec3;
@@ -135,12 +134,6 @@ impl Field {
         for v in values {
             *v *= self.scale;
         }
-    }
-
-    /// The field for many points that lie densely along a surface: in cubes of a width, in model units, within which values and
-    /// gradients of far centres are expanded, to about 1e-6 of the width. 40 spacings of the points make good cubes.
-    pub fn patches(&self, width: f64) -> Patches<'_> {
-        Patches::new(self, width / self.scale)
     }
 
     pub(crate) fn normalised(&self, points: &[DVec3]) -> Vec<DVec3> {

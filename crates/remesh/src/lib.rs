@@ -24,8 +24,7 @@
 //! | `isotropic/seat.rs` | points put back onto the input |
 //! | `smooth/taubin.rs`, `smooth/flow.rs` | smoothing that keeps the volume, and by implicit curvature flow |
 //! | `smooth/fair.rs` | harmonic, biharmonic and triharmonic fairing |
-//! | `smooth/held.rs` | what may move |
-//! | `smooth/laplace.rs`, `smooth/cholesky.rs` | the cotangent Laplacian and sparse systems made of it |
+//! | `smooth/held.rs` | what may move, and systems in it |
 //! | `hierarchy.rs` | decimation level by level, and details put back |
 //! | `error.rs` | why there is no result |
 

@@ -85,11 +85,8 @@ fn taubin_keeps_long_waves_and_kills_short_ones() {
 #[test]
 fn taubin_keeps_the_volume_of_a_noisy_ball_and_the_flow_does_not() {
     let mut ball = shapes::icosphere(1.0, 5);
-    let mut state = 1u64;
-    let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-    };
+    let mut rng = fastrand::Rng::with_seed(1);
+    let mut random = || rng.f64() - 0.5;
     ball.positions.iter_mut().for_each(|p| *p *= 1.0 + 0.02 * random());
     let before = volume(&ball);
     let roughness = |points: &[DVec3]| points.iter().map(|p| (p.length() - 1.0).powi(2)).sum::<f64>().sqrt();

@@ -3,7 +3,7 @@
 //! The pixels of each 4×4 tile share one low-discrepancy set of directions, a few each; a filter that stops at edges
 //! then gives every pixel the light of all. No grain is left, at a sixteenth of the rays.
 
-use crate::scene::{Place, Scene, Sight};
+use crate::scene::{Place, REACH, Scene, Sight};
 use glam::{DVec3, Vec3A};
 use mesh_core::{Cancelled, Watch};
 use rayon::prelude::*;
@@ -11,9 +11,6 @@ use std::f64::consts::TAU;
 
 /// Pixels along a tile.
 const TILE: usize = 4;
-
-/// How far rays look, in half sizes of the model.
-pub(crate) const REACH: f64 = 1.0;
 
 /// Start of a ray above its surface, likewise.
 const LIFT: f64 = 1e-5;

@@ -28,6 +28,7 @@
 //! | `ambient.rs` | ambient occlusion, interleaved and filtered |
 //! | `wire.rs` | triangle edges of constant width on the picture |
 //! | `picture.rs` | the picture, pass by pass |
+//! | `raster.rs` | its pixels, and PNG files of them |
 
 mod ambient;
 mod camera;
@@ -37,8 +38,10 @@ mod light;
 mod normals;
 mod params;
 mod picture;
+mod raster;
 mod scene;
 mod wire;
 
 pub use params::{Color, Error, Ground, Params, Projection, Shading, Wireframe};
-pub use picture::{picture, save};
+pub use picture::picture;
+pub use raster::{Picture, save};

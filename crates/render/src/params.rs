@@ -178,11 +178,11 @@ pub enum Error {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// The file could not be written.
-    #[error("cannot write {path}: {source}; check that the folder exists, is writable, and that the name ends in .png")]
+    #[error("cannot write {path}: {source}; check that the folder exists and is writable")]
     Save {
         /// The file.
         path: PathBuf,
         /// What went wrong.
-        source: image::ImageError,
+        source: std::io::Error,
     },
 }

@@ -5,13 +5,12 @@ use crate::camera::Camera;
 use crate::color::{Paint, over};
 use crate::light::{bytes, display, linear, shade};
 use crate::params::{Error, MAX_SIDE, Params};
+use crate::raster::Picture;
 use crate::scene::{Scene, Sight};
 use crate::wire::line_over;
 use glam::{DVec2, DVec3};
-use image::RgbImage;
 use mesh_core::{Cancelled, TriMesh, Watch};
 use rayon::prelude::*;
-use std::path::Path;
 
 /// Largest difference between neighbouring pixels, in sRGB, that is left as it is.
 const EDGE: f64 = 0.03;
@@ -24,7 +23,7 @@ const EDGE: f64 = 0.03;
 /// # Errors
 /// [`Error`] for an empty mesh, corners that are not points, a size or view out of range, colours that do not fit the
 /// mesh, and on cancellation.
-pub fn picture(mesh: &TriMesh, params: &Params, watch: &Watch) -> Result<RgbImage, Error> {
+pub fn picture(mesh: &TriMesh, params: &Params, watch: &Watch) -> Result<Picture, Error> {
     let (width, height) = (params.width, params.height);
     if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
         return Err(Error::Size { width, height });
@@ -36,17 +35,7 @@ pub fn picture(mesh: &TriMesh, params: &Params, watch: &Watch) -> Result<RgbImag
     let open = openness(view.scene, &sights, width as usize, params.ambient_samples, watch)?;
     let coarse = view.colors(&sights, &open);
     let fine = view.refined(&coarse, &sights, &open, watch)?;
-    let data = fine.into_iter().flat_map(bytes).collect();
-    Ok(RgbImage::from_raw(width, height, data).unwrap_or_default())
-}
-
-/// Writes a picture as PNG.
-///
-/// # Errors
-/// [`Error::Save`] when the file cannot be written.
-pub fn save(picture: &RgbImage, path: impl AsRef<Path>) -> Result<(), Error> {
-    let path = path.as_ref();
-    picture.save(path).map_err(|source| Error::Save { path: path.to_path_buf(), source })
+    Ok(Picture::new(width, height, fine.into_iter().flat_map(bytes).collect()))
 }
 
 struct View<'a> {

@@ -1,6 +1,5 @@
 //! The mesh in a unit frame, its tree, and what a ray sees.
 
-use crate::ambient::REACH;
 use crate::camera::{Camera, Ray, unit};
 use crate::color::Paint;
 use crate::normals::corner_normals;
@@ -8,6 +7,9 @@ use crate::params::{Error, Ground, Params};
 use glam::DVec3;
 use mesh_core::{Bounds, FaceId, Faces, TriMesh, VertexId};
 use mesh_query::TriBvh;
+
+/// How far rays that gather ambient light look, in half sizes of the model.
+pub(crate) const REACH: f64 = 1.0;
 
 pub(crate) struct Scene {
     /// Centred on the origin and scaled into [−1, 1], so that no length over- or underflows.

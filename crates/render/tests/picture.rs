@@ -1,10 +1,9 @@
 //! Pictures against what geometry says must be in them.
 
 use glam::DVec3;
-use image::RgbImage;
 use mesh_core::{TriMesh, VertexId, Watch, shapes};
 use proptest::prelude::*;
-use render::{Color, Error, Ground, Params, Projection, Shading, Wireframe, picture};
+use render::{Color, Error, Ground, Params, Picture, Projection, Shading, Wireframe, picture};
 use std::f64::consts::PI;
 
 const GREEN: [f64; 3] = [0.0, 1.0, 0.0];
@@ -21,13 +20,13 @@ fn studio() -> Params {
     }
 }
 
-fn draw(mesh: &TriMesh, params: &Params) -> RgbImage {
+fn draw(mesh: &TriMesh, params: &Params) -> Picture {
     picture(mesh, params, &Watch::default()).unwrap()
 }
 
 /// How much of a picture is not background.
-fn covered(picture: &RgbImage) -> f64 {
-    picture.pixels().filter(|p| p.0 != [0, 255, 0]).count() as f64
+fn covered(picture: &Picture) -> f64 {
+    picture.pixels().filter(|p| *p != [0, 255, 0]).count() as f64
 }
 
 #[test]
@@ -69,7 +68,8 @@ fn the_picture_frames_wide_and_tall_models() {
         for projection in [Projection::Orthographic, Projection::default()] {
             let seen = draw(&bar, &Params { width, height, projection, ..studio() });
             let border = |x: u32, y: u32| x == 0 || y == 0 || x == width - 1 || y == height - 1;
-            assert!(seen.enumerate_pixels().filter(|&(x, y, _)| border(x, y)).all(|(_, _, p)| p.0 == [0, 255, 0]));
+            let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+            assert!(places.filter(|&(x, y)| border(x, y)).all(|(x, y)| seen.pixel(x, y) == Some([0, 255, 0])));
             assert!(covered(&seen) > 100.0);
         }
     }
@@ -96,8 +96,8 @@ fn inside_out_shows() {
     let sphere = shapes::icosphere(1.0, 3);
     let mut flipped = sphere.clone();
     flipped.faces.iter_mut().for_each(|f| f.swap(0, 1));
-    let middle = |mesh| *draw(mesh, &studio()).get_pixel(60, 60);
-    let ([r, _, b], [fr, _, fb]) = (middle(&sphere).0, middle(&flipped).0);
+    let middle = |mesh| draw(mesh, &studio()).pixel(60, 60).unwrap();
+    let ([r, _, b], [fr, _, fb]) = (middle(&sphere), middle(&flipped));
     assert!(b > r && fr > fb, "blue-grey outside, red inside");
 }
 
@@ -106,7 +106,7 @@ fn smooth_shading_hides_facets_and_keeps_creases() {
     let steps = |mesh: &TriMesh, shading| {
         let seen = draw(mesh, &Params { shading, ambient_samples: 0, view: DVec3::new(1.0, 1.0, 1.2), ..studio() });
         // The largest step between neighbouring pixels well inside.
-        let level = |x: u32, y: u32| i32::from(seen.get_pixel(x, y).0[1]);
+        let level = |x: u32, y: u32| i32::from(seen.pixel(x, y).unwrap()[1]);
         (40..80).flat_map(|y| (40..80).map(move |x| (level(x, y) - level(x + 1, y)).abs())).max().unwrap()
     };
     let sphere = shapes::icosphere(1.0, 2);
@@ -121,12 +121,12 @@ fn colours_are_those_asked_for() {
     let count = two.faces.len();
     let red = Color::PerFace(vec![[1.0, 0.0, 0.0]; count]);
     let params = |color| Params { color, ..studio() };
-    let [r, g, b] = draw(&two, &params(red)).get_pixel(60, 60).0;
+    let [r, g, b] = draw(&two, &params(red)).pixel(60, 60).unwrap();
     assert!(r > 150 && g < 80 && b < 80, "{r} {g} {b}");
     let same = Color::PerVertex(vec![[1.0, 0.0, 0.0]; two.positions.len()]);
-    assert_eq!([r, g, b], draw(&two, &params(same)).get_pixel(60, 60).0);
+    assert_eq!([r, g, b], draw(&two, &params(same)).pixel(60, 60).unwrap());
     // A sphere bulges everywhere, seen from outside.
-    let [r, _, b] = draw(&two, &params(Color::Curvature)).get_pixel(60, 60).0;
+    let [r, _, b] = draw(&two, &params(Color::Curvature)).pixel(60, 60).unwrap();
     assert!(r > b);
     two.faces.truncate(10);
     let refused = picture(&two, &params(Color::Origin(vec![0; 9])), &Watch::default());

@@ -1,9 +1,9 @@
 //! Puts kept faces and pieces together, with origins.
 
 use crate::arrange::{Arrangement, Part, Simplex};
-use crate::boolean::Operation;
 use crate::classify::CUT;
 use crate::cut::{Class, Pieces, Snaps};
+use crate::options::Operation;
 use mesh_core::{Adjacency, FaceId, FaceOrigin, Faces, HalfedgeId, Origins, TriMesh, VertexId, VertexOrigin};
 use rayon::prelude::*;
 

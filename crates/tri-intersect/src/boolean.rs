@@ -6,62 +6,16 @@ use crate::classify::{CUT, Flood, SeamTable};
 use crate::cut::Snaps;
 use crate::error::Error;
 use crate::near::near;
+use crate::options::{Contact, Operation, Params, Slivers};
+use crate::seam::Seam;
 use crate::{check, cut, pinch, seam, tidy};
 use glam::DVec3;
 use mesh_core::{
-    Adjacency, Bounds, Connected, FaceId, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, Watch,
+    Adjacency, Bounds, Connected, FaceId, Faces, HalfedgeId, Origins, Positions, Stopwatch, TriMesh, Watch,
 };
 use mesh_query::TriBvh;
 use rayon::prelude::*;
 use std::sync::LazyLock;
-use std::time::Instant;
-
-/// Which points the result holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Operation {
-    /// Points in either part.
-    Union,
-    /// Points in part a that are not in part b.
-    Difference,
-    /// Points in both parts.
-    Intersection,
-}
-
-/// How a boolean treats its seam.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
-    /// What to do with short edges and slivers along the seam.
-    pub slivers: Slivers,
-    /// What to do where the parts touch without overlapping.
-    pub contact: Contact,
-}
-
-impl Default for Params {
-    fn default() -> Self {
-        Self { slivers: Slivers::Collapse { tolerance: 1e-9 }, contact: Contact::Split }
-    }
-}
-
-/// What to do with short edges along the seam.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Slivers {
-    /// Leave every cut where it fell. For callers that replace the seam anyway.
-    Keep,
-    /// Collapse edges at new vertices that are shorter than the tolerance, where the surface neither folds nor pinches.
-    Collapse {
-        /// As a multiple of the diagonal of the box around both parts.
-        tolerance: f64,
-    },
-}
-
-/// What to do where the result would pinch to an edge or a vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Contact {
-    /// Give each sheet its own copy of the vertices there, and warn. The sheets still touch in space.
-    Split,
-    /// Fail with [`Error::Contact`].
-    Refuse,
-}
 
 /// The result of a boolean.
 #[derive(Clone, Debug)]
@@ -74,16 +28,6 @@ pub struct Boolean {
     pub seams: Vec<Seam>,
     /// What was done and how long it took.
     pub report: Report,
-}
-
-/// A curve along which faces of two parts meet.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Seam {
-    /// Vertices of the result in order, each joined to the next by an edge. Walking along with the surface normal up,
-    /// the lower-numbered part (a) is on the left.
-    pub vertices: Vec<VertexId>,
-    /// Whether the last vertex is joined to the first.
-    pub closed: bool,
 }
 
 /// What a boolean did.
@@ -161,7 +105,7 @@ pub fn boolean(
     params: &Params,
     watch: &Watch,
 ) -> Result<Boolean, Error> {
-    let mut clock = Clock { since: Instant::now(), report: Report::default() };
+    let mut clock = Clock { stopwatch: Stopwatch::start(), report: Report::default() };
     let parts = arrange::parts(a, b)?;
     let bounds = check_solid(&parts)?;
     clock.lap("check");
@@ -282,15 +226,13 @@ pub fn boolean(
 
 /// Notes how long each stage took.
 struct Clock {
-    since: Instant,
+    stopwatch: Stopwatch,
     report: Report,
 }
 
 impl Clock {
     fn lap(&mut self, stage: &'static str) {
-        let now = Instant::now();
-        self.report.stages.push((stage, (now - self.since).as_secs_f64() * 1e3));
-        self.since = now;
+        self.report.stages.push((stage, self.stopwatch.lap().as_secs_f64() * 1e3));
     }
 
     /// Refuses or notes a place where sheets touch.

@@ -192,11 +192,8 @@ mod tests {
     /// seen from b, and turn round when a is flipped.
     #[test]
     fn agrees_with_the_closed_test_and_is_symmetric() {
-        let mut seed = 1u64;
-        let mut random = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((seed >> 40) % 4) as i32
-        };
+        let mut rng = fastrand::Rng::with_seed(1);
+        let mut random = || rng.i32(0..4);
         let (mut segments, mut areas) = (0, 0);
         for _ in 0..40_000 {
             let height = random().min(1); // half of the pairs lie in one plane

@@ -1,8 +1,10 @@
 //! One operation over many parts, with origins and seams carried through.
 
-use crate::boolean::{Boolean, Operation, Params, Report, Seam, boolean};
+use crate::boolean::{Boolean, Report, boolean};
 use crate::curves::barycentric;
 use crate::error::Error;
+use crate::options::{Operation, Params};
+use crate::seam::Seam;
 use crate::seam::chain;
 use mesh_core::{
     Adjacency, Connected, FaceId, FaceOrigin, Faces, HalfedgeId, Origins, TriMesh, VertexId, VertexOrigin, Watch,

@@ -36,6 +36,7 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `options.rs` | which boolean, and how it treats its seam |
 //! | `boolean.rs` | union, difference, intersection: the stages in order |
 //! | `fold.rs` | one operation over many parts |
 //! | `curves.rs` | intersection curves of two surfaces, open or closed |
@@ -67,6 +68,7 @@ mod exact;
 mod fold;
 mod inside;
 mod near;
+mod options;
 mod pinch;
 mod predicate;
 mod seam;
@@ -74,10 +76,12 @@ mod self_test;
 mod tidy;
 mod triangulate;
 
-pub use boolean::{Boolean, Contact, Operation, Params, Report, Seam, Slivers, Warning, boolean};
+pub use boolean::{Boolean, Report, Warning, boolean};
 pub use contact::triangles_intersect;
 pub use curves::{Curve, CurvePoint, intersection_curves};
 pub use embed::{EmbedError, EmbedParams, Embedded, SurfaceCurve, embed};
 pub use error::Error;
 pub use fold::{boolean_all, union_all};
+pub use options::{Contact, Operation, Params, Slivers};
+pub use seam::Seam;
 pub use self_test::{self_intersections, self_intersections_among};

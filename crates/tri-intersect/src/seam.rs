@@ -1,8 +1,17 @@
 //! The closed curves along which kept pieces of the two parts meet.
 
-use crate::boolean::Seam;
 use mesh_core::VertexId;
 use std::collections::HashMap;
+
+/// A curve along which faces of two parts meet.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Seam {
+    /// Vertices of the result in order, each joined to the next by an edge. Walking along with the surface normal up,
+    /// the lower-numbered part (a) is on the left.
+    pub vertices: Vec<VertexId>,
+    /// Whether the last vertex is joined to the first.
+    pub closed: bool,
+}
 
 /// Directed seam edges of a result: where a piece of a meets a piece of b, as a's piece runs along it. In order.
 /// `a` and `b` are the kept pieces.

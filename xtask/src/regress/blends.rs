@@ -2,9 +2,9 @@
 
 use fusion::blend::{self, Method};
 use fusion::{Choice, Error, Report, features, round};
-use mesh_core::{TriMesh, Watch};
+use mesh_core::{Stopwatch, TriMesh, Watch};
 use mesh_io::{Format, Model};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// What came of a blend.
 pub struct Run {
@@ -15,7 +15,7 @@ pub struct Run {
 /// Blends what is chosen of a solid with the default ball, or gives up after `limit`.
 pub fn blend(model: &Model, angle: f64, choice: Choice, radius: f64, limit: Duration) -> Run {
     let watch = Watch::default();
-    let (stop, start) = (watch.clone(), Instant::now());
+    let (stop, start) = (watch.clone(), Stopwatch::start());
     let (done, ended) = std::sync::mpsc::channel::<()>();
     let clock = std::thread::spawn(move || {
         if ended.recv_timeout(limit).is_err_and(|e| e == std::sync::mpsc::RecvTimeoutError::Timeout) {

@@ -109,11 +109,8 @@ pub fn run(bless: bool, reference: &mut Option<Reference>, threads: &mut Threads
 /// Compares our evaluation of a model's nets with that of `nets.py`.
 fn compare(name: &str, made: &Clustered, count: usize) -> Result<usize, Fault> {
     let patches = &made.blend.layout.patches;
-    let mut seed = 0x2545_F491_4F6C_DD1D_u64;
-    let mut random = || {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut rng = fastrand::Rng::with_seed(0x2545_F491_4F6C_DD1D);
+    let mut random = || rng.f64();
     let each = count.div_ceil(patches.len());
     let mut samples: Vec<Value> = vec![];
     for patch in patches {

@@ -3,11 +3,10 @@
 use super::case::Operation;
 use fusion::{blend, compose};
 use glam::DVec3;
-use mesh_core::{TriMesh, Watch, validate};
+use mesh_core::{Stopwatch, TriMesh, Watch, validate};
 use mesh_io::{Format, Model};
 use mesh_query::TriBvh;
 use std::collections::{BTreeMap, HashSet};
-use std::time::Instant;
 
 /// A result.
 pub struct Joined {
@@ -77,7 +76,7 @@ impl Joined {
 
 /// Joins the parts in order.
 pub fn join(parts: &[TriMesh], operation: Operation, radius: Option<f64>) -> Result<Joined, Failure> {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let result = run(parts, operation, radius);
     let milliseconds = 1e3 * start.elapsed().as_secs_f64();
     match result {

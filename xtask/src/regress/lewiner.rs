@@ -63,11 +63,8 @@ pub fn run() -> Result<usize, Fault> {
 /// Noise in [−1, 1], averaged over neighbours, within a shell of ones; in numbers that single precision holds, as
 /// scikit-image works in it.
 fn field(seed: u64, rounds: usize) -> Vec<f64> {
-    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x2545_F491_4F6C_DD1D;
-    let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    };
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let mut random = || 2.0 * rng.f64() - 1.0;
     let mut values: Vec<f64> = (0..SIDE.pow(3)).map(|_| random()).collect();
     let place = |i: usize| [i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE];
     for _ in 0..rounds {

@@ -6,8 +6,9 @@ use glam::{DQuat, DVec3};
 use mesh_core::{
     Adjacency, Connected, Faces, FloodParams, HalfedgeId, Seed, Source, SurfacePoint, TriMesh, VertexId, Watch,
 };
-use mesh_core::{area_vector, boundary_loops, cotangent_weight, cotangents, face_normals, flood};
+use mesh_core::{area_vector, boundary_loops, face_normals, flood};
 use mesh_core::{mean_curvature_vectors, mixed_areas, shapes, vertex_normals};
+use mesh_operators::{cotangent_weight, cotangents};
 use mesh_query::TriBvh;
 use param_conformal::Harmonic;
 use serde_json::{Value, json};
@@ -160,11 +161,8 @@ fn harmonic(name: &str, mesh: &Connected<TriMesh>) -> Result<Value, Fault> {
 fn points(name: &str, mesh: &Connected<TriMesh>) -> Result<Value, Fault> {
     let tree = TriBvh::build(mesh)?;
     let size = mesh_core::bounds(mesh);
-    let mut state = 7u64;
-    let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut rng = fastrand::Rng::with_seed(7);
+    let mut random = || rng.f64();
     let (mut places, mut distances) = (vec![], vec![]);
     for _ in 0..PLACES {
         let share = DVec3::from_array([(); 3].map(|()| 1.4 * random() - 0.2));

@@ -2,9 +2,11 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `against.rs` | results beside those of another build |
 //! | `blends.rs`, `cad.rs`, `parts.rs` | all edges of CAD meshes and parts |
 //! | `case.rs` | cases as files |
 //! | `golden.rs` | approved records |
+//! | `hashes.rs` | approved hashes of all bits |
 //! | `cluster.rs` | polyhedra rounded by clusters |
 //! | `compositions.rs` | random compositions of open pieces |
 //! | `lewiner.rs` | marching cubes on random fields |
@@ -16,12 +18,14 @@
 //! | `reference.rs` | results checked by another library |
 //! | `threads.rs` | results of one thread and of two compared |
 
+mod against;
 mod blends;
 mod cad;
 mod case;
 pub mod cluster;
 mod compositions;
 mod golden;
+mod hashes;
 mod join;
 mod lewiner;
 mod measures;
@@ -34,6 +38,7 @@ mod reference;
 mod threads;
 
 use crate::{Fault, root};
+use against::Against;
 use golden::Golden;
 use mesh_core::TriMesh;
 use reference::Reference;
@@ -47,6 +52,9 @@ pub struct Options {
     /// Approve what the cases give now
     #[arg(long)]
     bless: bool,
+    /// Compare with the results kept in this folder, vertex by vertex; what it lacks is put there
+    #[arg(long, value_name = "DIR")]
+    against: Option<PathBuf>,
     /// Also run the pairs of fixtures/pairs.toml, random compositions and the broken files found in this folder
     #[arg(long, value_name = "DIR")]
     models: Option<PathBuf>,
@@ -54,7 +62,7 @@ pub struct Options {
     #[arg(long, value_name = "DIR")]
     parts: Option<PathBuf>,
     /// Only the CAD meshes and parts, and nothing else
-    #[arg(long, conflicts_with_all = ["bless", "reference", "broken"])]
+    #[arg(long, conflicts_with_all = ["bless", "against", "reference", "broken"])]
     cad: bool,
     /// Only a few of the pairs and compositions, at one radius, few verbs on each broken file, and no tables
     #[arg(long, requires = "models")]
@@ -76,11 +84,12 @@ pub fn run(options: &Options) -> Result<(), Fault> {
         return verdict(cad_meshes(options)?);
     }
     let mut reference = if options.reference { Some(Reference::new()?) } else { None };
-    let mut threads = Threads::new()?;
+    let against = options.against.as_deref().map(Against::new).transpose()?;
+    let mut threads = Threads::new(against)?;
     let mut faults = cluster::run(options.bless, &mut reference, &mut threads)?;
     faults += recipes::run(options.bless, &mut reference, &mut threads)?;
     faults += cases(options.bless, &mut reference, &mut threads)?;
-    threads.finish()?;
+    faults += hashes::run(&threads.finish()?, options.bless)?;
     if options.reference {
         faults += measures::run()? + lewiner::run()?;
     }

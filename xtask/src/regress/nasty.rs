@@ -1,12 +1,12 @@
 //! Broken files through the command line: whatever they hold, no panic, no hang, a valid result or a sentence and no file.
 
 use crate::{Fault, binary};
-use mesh_core::{TriMesh, validate};
+use mesh_core::{Stopwatch, TriMesh, validate};
 use std::fmt::Write;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// What is done with every file, IN, and how many seconds it may take.
 const JOBS: [(&str, u64); 15] = [
@@ -48,7 +48,7 @@ pub fn run(folder: &Path, quick: bool) -> Result<usize, Fault> {
         let jobs = JOBS.into_iter().zip(&mut slowest).filter(|((_, seconds), _)| !quick || *seconds <= SHORT);
         for ((line, seconds), slowest) in jobs.skip(number % stride).step_by(stride) {
             runs += 1;
-            let start = Instant::now();
+            let start = Stopwatch::start();
             let words = line.split(' ').map(|w| if w == "IN" { file.as_os_str() } else { w.as_ref() });
             let mut command = Command::new(&program);
             let said = tempfile::NamedTempFile::new()?;
@@ -113,7 +113,7 @@ fn unsaid(said: File) -> Result<Option<String>, Fault> {
 /// The exit code, −1 for a signal, `None` when it took too long and was stopped.
 fn watch(command: &mut Command, patience: Duration) -> Result<Option<i32>, Fault> {
     let mut child = command.stdin(Stdio::null()).stdout(Stdio::null()).spawn()?;
-    let start = Instant::now();
+    let start = Stopwatch::start();
     loop {
         if let Some(status) = child.try_wait()? {
             return Ok(Some(status.code().unwrap_or(-1)));

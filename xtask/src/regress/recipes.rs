@@ -7,12 +7,11 @@ use super::reference::Reference;
 use super::threads::Threads;
 use crate::{Fault, root};
 use fusion::Recipe;
-use mesh_core::{Connected, Watch, area, topology, validate, volume};
+use mesh_core::{Connected, Stopwatch, Watch, area, topology, validate, volume};
 use mesh_io::Format;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Measures may differ by this share.
 const TOLERANCE: f64 = 1e-3;
@@ -71,7 +70,7 @@ fn replay(
     let recipe = Recipe::parse(&fs::read_to_string(path)?)?;
     let folder = path.parent().unwrap_or(path);
     let parts = recipe.parts.iter().map(|p| mesh_io::read(&folder.join(&p.mesh))).collect::<Result<Vec<_>, _>>()?;
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let job = || recipe.run(&parts, Format::Ply, &Watch::default());
     let (made, differs) = threads.twice(name, job, |made| made.as_ref().ok().map(|m| &m.model.mesh));
     let made = match made {

@@ -3,6 +3,10 @@
 use super::json::Node;
 use crate::error::Fault;
 use crate::folder::Folder;
+use base64::alphabet;
+use base64::engine::general_purpose::{GeneralPurpose, GeneralPurposeConfig, STANDARD};
+use base64::engine::{DecodePaddingMode, Engine};
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 use std::borrow::Cow;
 
 /// The chunks of a GLB file: JSON, and the binary one if there is any.
@@ -82,7 +86,7 @@ pub(super) fn load(uri: &str, folder: &Folder) -> Result<Vec<u8>, String> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (kind, payload) = data.split_once(',').ok_or("a data URI without a comma")?;
         if !kind.ends_with(";base64") {
-            return Ok(percent_decoded(payload));
+            return Ok(percent_decode_str(payload).collect());
         }
         return from_base64(payload.as_bytes()).ok_or_else(|| "a data URI that is not base64".into());
     }
@@ -94,65 +98,42 @@ pub(super) fn load(uri: &str, folder: &Folder) -> Result<Vec<u8>, String> {
 
 /// A relative URI as a file name.
 pub(super) fn file_name(uri: &str) -> String {
-    String::from_utf8_lossy(&percent_decoded(uri)).into_owned()
+    percent_decode_str(uri).decode_utf8_lossy().into_owned()
 }
 
-fn percent_decoded(text: &str) -> Vec<u8> {
-    let hex = |b: u8| char::from(b).to_digit(16).map(|d| d as u8);
-    let (bytes, mut out, mut at) = (text.as_bytes(), vec![], 0);
-    while at < bytes.len() {
-        let pair = bytes.get(at + 1..at + 3).and_then(|p| Some(16 * hex(p[0])? + hex(p[1])?));
-        if let Some(byte) = pair.filter(|_| bytes[at] == b'%') {
-            out.push(byte);
-            at += 3;
-        } else {
-            out.push(bytes[at]);
-            at += 1;
-        }
-    }
-    out
-}
+/// What a relative URI may hold as it is.
+const PLAIN: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~').remove(b'/');
 
 /// A file name as a relative URI.
 pub(super) fn percent_encoded(name: &str) -> String {
-    let plain = |b: u8| b.is_ascii_alphanumeric() || b"-._~/".contains(&b);
-    name.bytes().map(|b| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect()
+    utf8_percent_encode(name, PLAIN).to_string()
 }
-
-const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 pub(super) fn to_base64(bytes: &[u8]) -> String {
-    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let word = [0, 1, 2].iter().fold(0u32, |w, &i| w << 8 | u32::from(chunk.get(i).copied().unwrap_or(0)));
-        for i in 0..4 {
-            let digit = DIGITS[(word >> (18 - 6 * i)) as usize & 63];
-            out.push(if i <= chunk.len() { char::from(digit) } else { '=' });
-        }
-    }
-    out
+    STANDARD.encode(bytes)
 }
 
+/// Files in the wild have line breaks, no padding, either alphabet and bits to spare.
+const LENIENT: GeneralPurpose = GeneralPurpose::new(
+    &alphabet::STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true),
+);
+
 fn from_base64(text: &[u8]) -> Option<Vec<u8>> {
-    let mut out = Vec::with_capacity(text.len() / 4 * 3);
-    let (mut word, mut bits) = (0u32, 0);
-    for &b in text.iter().filter(|b| !b.is_ascii_whitespace() && **b != b'=') {
-        let digit = match b {
-            b'A'..=b'Z' => b - b'A',
-            b'a'..=b'z' => b - b'a' + 26,
-            b'0'..=b'9' => b - b'0' + 52,
-            b'+' | b'-' => 62,
-            b'/' | b'_' => 63,
-            _ => return None,
-        };
-        word = word << 6 | u32::from(digit);
-        bits += 6;
-        if bits >= 8 {
-            bits -= 8;
-            out.push((word >> bits) as u8);
-        }
+    let standard = |b: &u8| match b {
+        b'-' => b'+',
+        b'_' => b'/',
+        &b => b,
+    };
+    let kept = text.iter().filter(|b| !b.is_ascii_whitespace() && **b != b'=');
+    let mut digits: Vec<u8> = kept.map(standard).collect();
+    // A digit on its own at the end holds no whole byte.
+    if digits.len() % 4 == 1 && alphabet::STANDARD.as_str().as_bytes().contains(&digits[digits.len() - 1]) {
+        digits.pop();
     }
-    Some(out)
+    LENIENT.decode(digits).ok()
 }
 
 #[cfg(test)]
@@ -179,5 +160,9 @@ mod tests {
             ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg=="]
         );
         assert_eq!(from_base64(b"Zg*="), None);
+        for text in ["Zm9v\r\nYg==", "Zm9vYg", "Zm9v Yh==", "Zm9vYg==A", "Zm9v=Yg"] {
+            assert_eq!(from_base64(text.as_bytes()).as_deref(), Some(&b"foob"[..]), "{text}");
+        }
+        assert_eq!(from_base64(b"-_-_"), from_base64(b"+/+/"));
     }
 }

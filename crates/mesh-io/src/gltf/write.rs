@@ -7,52 +7,92 @@ use crate::model::{Material, Materials, Model, TextureSource};
 use crate::notes::Notes;
 use crate::vary::{Value as _, distinct};
 use glam::DVec3;
+use gltf::binary::{Glb, Header};
+use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
+use gltf::json::buffer::{self, Target as Use};
+use gltf::json::material::{AlphaMode, PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked::Valid;
+use gltf::json::{self, Accessor, Buffer, Image, Index, Root, Texture, texture};
 use mesh_core::IdMap;
-use serde_json::{Value, json};
+use serde_json::value::to_raw_value;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// Pictures larger than this are not embedded.
 const MAX_PICTURE: u64 = 256 << 20;
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-const UNSIGNED_INT: u32 = 5125;
-const FLOAT: u32 = 5126;
 
 /// The binary buffer as it grows, with the views and accessors into it.
 #[derive(Default)]
 struct Store {
     pieces: Vec<Vec<u8>>,
     length: usize,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
+    views: Vec<buffer::View>,
+    accessors: Vec<Accessor>,
 }
 
 impl Store {
-    /// Adds bytes, padded to a multiple of four, and returns the view's index.
-    fn view(&mut self, mut pieces: Vec<Vec<u8>>, target: Option<u32>) -> usize {
+    /// Adds bytes, padded to a multiple of four.
+    fn view(&mut self, mut pieces: Vec<Vec<u8>>, target: Option<Use>) -> Index<buffer::View> {
         let length: usize = pieces.iter().map(Vec::len).sum();
-        let mut view = json!({ "buffer": 0, "byteOffset": self.length, "byteLength": length });
-        if let Some(target) = target {
-            view["target"] = target.into();
-        }
-        self.views.push(view);
+        let view = buffer::View {
+            buffer: Index::new(0),
+            byte_length: length.into(),
+            byte_offset: Some(self.length.into()),
+            byte_stride: None,
+            name: None,
+            target: target.map(Valid),
+            extensions: None,
+            extras: None,
+        };
         pieces.push(vec![0; length.next_multiple_of(4) - length]);
         self.length += length.next_multiple_of(4);
         self.pieces.append(&mut pieces);
-        self.views.len() - 1
+        Index::push(&mut self.views, view)
     }
 
-    fn accessor(&mut self, accessor: Value) -> usize {
-        self.accessors.push(accessor);
-        self.accessors.len() - 1
+    /// Adds `count` elements that begin at a byte of a view.
+    fn accessor(
+        &mut self,
+        view: Index<buffer::View>,
+        start: usize,
+        count: usize,
+        component: ComponentType,
+        of: Type,
+    ) -> Index<Accessor> {
+        let accessor = Accessor {
+            buffer_view: Some(view),
+            byte_offset: Some(start.into()),
+            count: count.into(),
+            component_type: Valid(GenericComponentType(component)),
+            type_: Valid(of),
+            min: None,
+            max: None,
+            name: None,
+            normalized: false,
+            sparse: None,
+            extensions: None,
+            extras: None,
+        };
+        Index::push(&mut self.accessors, accessor)
     }
 
     /// Adds one row of f32 per vertex.
-    fn rows<const N: usize>(&mut self, count: usize, row: impl Fn(usize) -> [f32; N] + Sync) -> usize {
+    fn rows<const N: usize>(&mut self, count: usize, row: impl Fn(usize) -> [f32; N] + Sync) -> Index<Accessor> {
         let push = |i: usize, out: &mut Vec<u8>| row(i).iter().for_each(|x| out.extend(x.to_le_bytes()));
-        let view = self.view(in_pieces(count, push), Some(ARRAY_BUFFER));
-        let kind = format!("VEC{N}");
-        self.accessor(json!({ "bufferView": view, "componentType": FLOAT, "count": count, "type": kind }))
+        let view = self.view(in_pieces(count, push), Some(Use::ArrayBuffer));
+        let of = match N {
+            2 => Type::Vec2,
+            3 => Type::Vec3,
+            _ => Type::Vec4,
+        };
+        self.accessor(view, 0, count, ComponentType::F32, of)
+    }
+
+    /// The one buffer, if there is anything in it.
+    fn buffers(&self, uri: Option<String>) -> Vec<Buffer> {
+        let buffer = Buffer { byte_length: self.length.into(), name: None, uri, extensions: None, extras: None };
+        if self.length > 0 { vec![buffer] } else { vec![] }
     }
 }
 
@@ -61,24 +101,14 @@ pub(crate) fn encode_glb(model: &Model) -> Encoded {
     let mut encoded = Encoded::default();
     let mut store = Store::default();
     let mut document = document(model, &mut store, None, &mut encoded);
-    if store.length > 0 {
-        document["buffers"] = json!([{ "byteLength": store.length }]);
-    }
-    let mut json = document.to_string().into_bytes();
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let binary = if store.length > 0 { 8 + store.length } else { 0 };
-    let mut head = b"glTF".to_vec();
-    for word in [2, 12 + 8 + json.len() + binary, json.len()] {
-        head.extend((word as u32).to_le_bytes());
-    }
-    head.extend(b"JSON");
-    encoded.body = vec![head, json];
-    if store.length > 0 {
-        let mut head = (store.length as u32).to_le_bytes().to_vec();
-        head.extend(b"BIN\0");
-        encoded.body.push(head);
-        encoded.body.append(&mut store.pieces);
-    }
+    document.buffers = store.buffers(None);
+    let glb = Glb {
+        // Filled in by the writer.
+        header: Header { magic: *b"glTF", version: 2, length: 0 },
+        json: Cow::Owned(document.to_vec().unwrap_or_default()),
+        bin: (store.length > 0).then(|| Cow::Owned(store.pieces.concat())),
+    };
+    encoded.body = vec![glb.to_vec().unwrap_or_default()];
     encoded
 }
 
@@ -98,41 +128,48 @@ pub(crate) fn encode_json(model: &Model, target: Option<&Target>) -> Encoded {
             }
             None => format!("data:application/octet-stream;base64,{}", to_base64(&bytes)),
         };
-        document["buffers"] = json!([{ "byteLength": store.length, "uri": uri }]);
+        document.buffers = store.buffers(Some(uri));
     }
-    let mut text = serde_json::to_vec_pretty(&document).unwrap_or_default();
+    let mut text = document.to_vec_pretty().unwrap_or_default();
     text.push(b'\n');
     encoded.body = vec![text];
     encoded
 }
 
 /// Everything but the buffer.
-fn document(model: &Model, store: &mut Store, target: Option<&Target>, encoded: &mut Encoded) -> Value {
-    let mut document = json!({
-        "asset": { "version": "2.0", "generator": concat!("mesh-io ", env!("CARGO_PKG_VERSION")) },
-        "scene": 0,
-        "scenes": [{}],
-    });
+fn document(model: &Model, store: &mut Store, target: Option<&Target>, encoded: &mut Encoded) -> Root {
+    let asset = json::Asset {
+        version: "2.0".into(),
+        generator: Some(concat!("mesh-io ", env!("CARGO_PKG_VERSION")).into()),
+        ..json::Asset::default()
+    };
+    let mut document = Root { asset, scene: Some(Index::new(0)), ..Root::default() };
+    let mut scene = json::Scene { name: None, nodes: vec![], extensions: None, extras: None };
     if model.mesh.faces.is_empty() {
         encoded.notes.add("vertices without faces dropped", model.mesh.positions.len(), None);
+        document.scenes = vec![scene];
         return document;
     }
     let (attributes, entry_of_corner) = vertices(model, store, &mut encoded.notes);
     let primitives = primitives(model, store, &attributes, &entry_of_corner);
-    document["scenes"] = json!([{ "nodes": [0] }]);
-    document["nodes"] = json!([{ "mesh": 0 }]);
-    document["meshes"] = json!([{ "primitives": primitives }]);
+    let mesh = json::Mesh { primitives, name: None, weights: None, extensions: None, extras: None };
+    let node = json::Node { mesh: Some(Index::push(&mut document.meshes, mesh)), ..json::Node::default() };
+    scene.nodes.push(Index::push(&mut document.nodes, node));
+    document.scenes = vec![scene];
     if let Some(materials) = &model.materials {
         looks(materials, store, target, encoded, &mut document);
     }
-    document["accessors"] = std::mem::take(&mut store.accessors).into();
-    document["bufferViews"] = std::mem::take(&mut store.views).into();
+    document.accessors = std::mem::take(&mut store.accessors);
+    document.buffer_views = std::mem::take(&mut store.views);
     document
 }
 
+/// What a vertex has, by name.
+type Attributes = BTreeMap<json::validation::Checked<Semantic>, Index<Accessor>>;
+
 /// Stores the vertices, split where corners at one vertex differ, in vertex order so that welding restores it.
 /// Returns the attributes' accessors and the stored vertex of each corner.
-fn vertices(model: &Model, store: &mut Store, notes: &mut Notes) -> (Value, Vec<u32>) {
+fn vertices(model: &Model, store: &mut Store, notes: &mut Notes) -> (Attributes, Vec<u32>) {
     let mesh = &model.mesh;
     let uvs = model.uvs.as_ref().map(IdMap::as_slice);
     let colors = model.colors.as_ref().map(IdMap::as_slice);
@@ -175,28 +212,30 @@ fn vertices(model: &Model, store: &mut Store, notes: &mut Notes) -> (Value, Vec<
             (low[k], high[k]) = (low[k].min(x), high[k].max(x));
         }
     }
-    store.accessors[position]["min"] = json!(low.map(f64::from));
-    store.accessors[position]["max"] = json!(high.map(f64::from));
-    let mut attributes = json!({ "POSITION": position });
+    let range = &mut store.accessors[position.value()];
+    (range.min, range.max) = (Some(low.to_vec().into()), Some(high.to_vec().into()));
+    let mut attributes = Attributes::from([(Valid(Semantic::Positions), position)]);
     if let Some(normals) = normals {
         let unit = |i: usize| entries[i].1.map_or(DVec3::Z, |c| normals[c as usize].normalize());
-        attributes["NORMAL"] = store.rows(entries.len(), |i| unit(i).as_vec3().to_array()).into();
+        let accessor = store.rows(entries.len(), |i| unit(i).as_vec3().to_array());
+        attributes.insert(Valid(Semantic::Normals), accessor);
     }
     if let Some(uvs) = uvs {
         // glTF counts v from the top, and has no way to leave a value out.
         let value = |i: usize| entries[i].1.map(|c| uvs[c as usize]).filter(|uv| !uv.is_none()).unwrap_or([0.0, 1.0]);
         let row = |i: usize| [value(i)[0] as f32, (1.0 - value(i)[1]) as f32];
-        attributes["TEXCOORD_0"] = store.rows(entries.len(), row).into();
+        attributes.insert(Valid(Semantic::TexCoords(0)), store.rows(entries.len(), row));
     }
     if let Some(colors) = colors {
         let value = |i: usize| entries[i].1.map(|c| colors[c as usize]).filter(|c| !c.is_none()).unwrap_or([1.0; 4]);
-        attributes["COLOR_0"] = store.rows(entries.len(), |i| value(i).map(|x| x as f32)).into();
+        let accessor = store.rows(entries.len(), |i| value(i).map(|x| x as f32));
+        attributes.insert(Valid(Semantic::Colors(0)), accessor);
     }
     (attributes, entry_of_corner)
 }
 
 /// One primitive for each pair of group and material, in order of first appearance.
-fn primitives(model: &Model, store: &mut Store, attributes: &Value, entry_of_corner: &[u32]) -> Vec<Value> {
+fn primitives(model: &Model, store: &mut Store, attributes: &Attributes, entry_of_corner: &[u32]) -> Vec<Primitive> {
     let label = |map: Option<&[u32]>, f: usize| map.map(|m| m[f]);
     let groups = model.groups.as_ref().map(|g| g.of_face.as_slice());
     let materials = model.materials.as_ref().map(|m| m.of_face.as_slice());
@@ -218,23 +257,23 @@ fn primitives(model: &Model, store: &mut Store, attributes: &Value, entry_of_cor
             corners.for_each(|c| out.extend(entry_of_corner[c].to_le_bytes()));
         };
         all.extend(in_pieces(faces.len(), push));
-        let view = store.views.len();
+        let view = Index::new(store.views.len() as u32);
         let count = 3 * faces.len();
-        let indices = store.accessor(json!({
-            "bufferView": view, "byteOffset": start, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR",
-        }));
+        let indices = store.accessor(view, start, count, ComponentType::U32, Type::Scalar);
         start += 4 * count;
-        let mut primitive = json!({ "attributes": attributes, "indices": indices });
-        if let Some(material) = material {
-            primitive["material"] = (*material).into();
+        let group = group.zip(model.groups.as_ref()).map(|(group, groups)| &groups.names[group as usize]);
+        Primitive {
+            attributes: attributes.clone(),
+            indices: Some(indices),
+            material: material.map(Index::new),
+            mode: Valid(Mode::Triangles),
+            targets: None,
+            extensions: None,
+            extras: group.and_then(|name| to_raw_value(&BTreeMap::from([("group", name)])).ok()),
         }
-        if let (Some(group), Some(groups)) = (group, &model.groups) {
-            primitive["extras"] = json!({ "group": groups.names[*group as usize] });
-        }
-        primitive
     });
     let primitives = primitives.collect();
-    store.view(all, Some(ELEMENT_ARRAY_BUFFER));
+    store.view(all, Some(Use::ElementArrayBuffer));
     primitives
 }
 
@@ -244,39 +283,43 @@ fn looks(
     store: &mut Store,
     target: Option<&Target>,
     encoded: &mut Encoded,
-    document: &mut Value,
+    document: &mut Root,
 ) {
     let beside = target.map(|target| target.pictures(&materials.list, &mut encoded.sides));
-    let (mut list, mut images) = (vec![], vec![]);
     for (i, material) in materials.list.iter().enumerate() {
-        let mut pbr = json!({
-            "baseColorFactor": material.base_color.map(|x| x.clamp(0.0, 1.0)),
-            "metallicFactor": material.metallic.clamp(0.0, 1.0),
-            "roughnessFactor": material.roughness.clamp(0.0, 1.0),
-        });
         let image = match &beside {
-            Some(names) => names[i].as_ref().map(|name| json!({ "uri": percent_encoded(name) })),
+            Some(names) => names[i].as_ref().map(|name| Image { uri: Some(percent_encoded(name)), ..no_image() }),
             None => embedded(material, store, &mut encoded.notes),
         };
-        if let Some(image) = image {
-            pbr["baseColorTexture"] = json!({ "index": images.len() });
-            images.push(image);
-        }
-        let mut entry = json!({ "name": material.name, "pbrMetallicRoughness": pbr });
-        if material.base_color[3] < 1.0 {
-            entry["alphaMode"] = "BLEND".into();
-        }
-        list.push(entry);
-    }
-    document["materials"] = list.into();
-    if !images.is_empty() {
-        document["textures"] = (0..images.len()).map(|i| json!({ "source": i })).collect();
-        document["images"] = images.into();
+        let picture = image.map(|image| {
+            let source = Index::push(&mut document.images, image);
+            let texture = Texture { name: None, sampler: None, source, extensions: None, extras: None };
+            let index = Index::push(&mut document.textures, texture);
+            texture::Info { index, tex_coord: 0, extensions: None, extras: None }
+        });
+        let pbr = PbrMetallicRoughness {
+            base_color_factor: PbrBaseColorFactor(material.base_color.map(|x| x.clamp(0.0, 1.0) as f32)),
+            base_color_texture: picture,
+            metallic_factor: StrengthFactor(material.metallic.clamp(0.0, 1.0) as f32),
+            roughness_factor: StrengthFactor(material.roughness.clamp(0.0, 1.0) as f32),
+            ..PbrMetallicRoughness::default()
+        };
+        let opaque = material.base_color[3] >= 1.0;
+        document.materials.push(json::Material {
+            name: Some(material.name.clone()),
+            pbr_metallic_roughness: pbr,
+            alpha_mode: Valid(if opaque { AlphaMode::Opaque } else { AlphaMode::Blend }),
+            ..json::Material::default()
+        });
     }
 }
 
+fn no_image() -> Image {
+    Image { buffer_view: None, mime_type: None, name: None, uri: None, extensions: None, extras: None }
+}
+
 /// A material's picture as an image in the buffer. glTF takes PNG and JPEG only.
-fn embedded(material: &Material, store: &mut Store, notes: &mut Notes) -> Option<Value> {
+fn embedded(material: &Material, store: &mut Store, notes: &mut Notes) -> Option<Image> {
     let texture = material.texture.as_ref()?;
     let bytes = match &texture.source {
         TextureSource::Embedded(bytes) => Some(bytes.to_vec()),
@@ -292,5 +335,6 @@ fn embedded(material: &Material, store: &mut Store, notes: &mut Notes) -> Option
     };
     let kind = if is_png(&bytes) { "image/png" } else { "image/jpeg" };
     let view = store.view(vec![bytes], None);
-    Some(json!({ "bufferView": view, "mimeType": kind, "name": texture.name }))
+    let mime_type = Some(json::image::MimeType(kind.into()));
+    Some(Image { buffer_view: Some(view), mime_type, name: Some(texture.name.clone()), ..no_image() })
 }

@@ -1,10 +1,10 @@
 //! Fairing: the surface that bends least, or whose bending changes least, within what is held.
 
-use super::held::Task;
-use super::laplace::{Laplacian, Rows, add_up};
+use super::held::{Task, inner_areas};
 use crate::{Error, Frozen};
 use glam::DVec3;
 use mesh_core::{Adjacency, Positions, VertexId, Watch};
+use mesh_operators::{Laplacian, SparseRows};
 
 /// What a fair surface minimises, and how smoothly it continues what is held.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,39 +63,36 @@ pub fn fair<M: Adjacency + Positions + Sync>(
     watch: &Watch,
 ) -> Result<Vec<DVec3>, Error> {
     let mut task = Task::new(mesh, frozen)?;
-    if let Some(v) = unheld(mesh, &task.free) {
+    if let Some(v) = unheld(mesh, task.free()) {
         return Err(Error::Singular { at: mesh.position(v) });
     }
-    let right = vec![DVec3::ZERO; task.free.len()];
-    let mut factor = None;
+    let mut before = None;
     for round in 0..fairing.rounds {
         watch.step("fair", round as f64 / fairing.rounds as f64)?;
-        if task.free.is_empty() {
+        if task.free().is_empty() {
             break;
         }
-        let laplacian = Laplacian::new(&task.moved);
+        let (laplacian, areas) = (Laplacian::cotangent(&task.moved), inner_areas(&task.moved));
         let further = match fairing.fairness {
             Fairness::Harmonic => 0,
             Fairness::Biharmonic => 1,
             Fairness::Triharmonic => 2,
         };
-        let rows = Rows::gather(&task.free, |v, row| {
+        let system = task.prepared(before.take(), |v, row| {
             laplacian.add_row(v, 1.0, row);
             for _ in 0..further {
-                // Vertices of the boundary have no Laplacian, which lets the surface leave it without bending.
-                add_up(row);
+                // Vertices of the boundary count for nothing, which lets the surface leave it without bending.
+                SparseRows::add_up(row);
                 for (n, x) in std::mem::take(row) {
-                    let area = laplacian.areas[n as usize];
+                    let area = areas[n as usize];
                     if area > 0.0 {
                         laplacian.add_row(n, x / area, row);
                     }
                 }
             }
-        });
-        factor = Some(
-            rows.solve(&mut task.moved.points, &right, 2, factor)
-                .map_err(|v| Error::IllConditioned { at: mesh.position(VertexId(v)) })?,
-        );
+        })?;
+        system.solve(&mut task.moved.points, &[], 2);
+        before = Some(system);
     }
     Ok(task.finish())
 }

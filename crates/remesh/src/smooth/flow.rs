@@ -1,10 +1,10 @@
 //! Smoothing by implicit curvature flow.
 
-use super::held::Task;
-use super::laplace::{Laplacian, Rows};
+use super::held::{Task, inner_areas};
 use crate::{Error, Frozen};
 use glam::DVec3;
 use mesh_core::{Adjacency, Positions, Watch};
+use mesh_operators::Laplacian;
 
 /// How far the curvature flow goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,23 +50,21 @@ pub fn curvature_flow<M: Adjacency + Positions + Sync>(
     }
     let mut task = Task::new(mesh, frozen)?;
     let step = flow.time / flow.steps.max(1) as f64 / (task.scale * task.scale);
-    let mut factor = None;
+    let mut before = None;
     for done in 0..flow.steps {
         watch.step("smooth", done as f64 / flow.steps as f64)?;
-        if task.free.is_empty() {
+        if task.free().is_empty() {
             break;
         }
-        let laplacian = Laplacian::new(&task.moved);
-        let rows = Rows::gather(&task.free, |v, row| {
-            row.push((v, laplacian.areas[v as usize]));
+        let (laplacian, areas) = (Laplacian::cotangent(&task.moved), inner_areas(&task.moved));
+        let system = task.prepared(before.take(), |v, row| {
+            row.push((v, areas[v as usize]));
             laplacian.add_row(v, step, row);
-        });
-        let points = &mut task.moved.points;
-        let right: Vec<DVec3> = task.free.iter().map(|&v| laplacian.areas[v as usize] * points[v as usize]).collect();
-        factor = Some(
-            rows.solve(points, &right, 1, factor)
-                .map_err(|v| Error::IllConditioned { at: mesh.position(mesh_core::VertexId(v)) })?,
-        );
+        })?;
+        let right: Vec<DVec3> =
+            task.free().iter().map(|&v| areas[v as usize] * task.moved.points[v as usize]).collect();
+        system.solve(&mut task.moved.points, &right, 1);
+        before = Some(system);
     }
     Ok(task.finish())
 }

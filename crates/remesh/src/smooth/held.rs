@@ -1,8 +1,9 @@
-//! Which vertices a smoothing may move, and the surface seen from a place where numbers are of order one.
+//! Which vertices a smoothing may move, the surface seen from a place where numbers are of order one, and systems in what may move.
 
 use crate::{Error, Frozen};
 use glam::DVec3;
 use mesh_core::{Adjacency, Bounds, FaceId, Faces, HalfedgeId, Positions, VertexId, VertexMap, dihedral_angle};
+use mesh_operators::{HeldSystem, Unknowns, vertex_areas};
 
 impl Frozen {
     /// Also holds the ends of all edges whose faces' normals are `angle` degrees or more apart. O(n).
@@ -63,7 +64,7 @@ impl<M> Positions for Moved<'_, M> {
 /// A surface moved to the origin and scaled to a box of diagonal 1, and the vertices that may move.
 pub(super) struct Task<'a, M> {
     pub moved: Moved<'a, M>,
-    pub free: Vec<u32>,
+    pub unknowns: Unknowns,
     center: DVec3,
     pub scale: f64,
 }
@@ -97,17 +98,49 @@ impl<'a, M: Adjacency + Positions> Task<'a, M> {
         let (center, diagonal) = (if bounds.is_empty() { DVec3::ZERO } else { bounds.center() }, bounds.diagonal());
         let scale = if diagonal > 0.0 { diagonal } else { 1.0 };
         let points = mesh.vertex_ids().map(|v| (mesh.position(v) - center) / scale).collect();
-        let free = (0..free.len() as u32).filter(|&v| free[v as usize]).collect();
-        Ok(Self { moved: Moved { mesh, points }, free, center, scale })
+        let unknowns = Unknowns::new(free.len(), |v| free[v]);
+        Ok(Self { moved: Moved { mesh, points }, unknowns, center, scale })
+    }
+
+    /// The vertices that may move, ascending.
+    pub fn free(&self) -> &[u32] {
+        self.unknowns.free()
+    }
+
+    /// The system of the free vertices' rows; one that was prepared before, with entries at the same places, is renewed.
+    ///
+    /// # Errors
+    /// [`Error::IllConditioned`].
+    pub fn prepared(
+        &self,
+        before: Option<HeldSystem>,
+        row: impl Fn(u32, &mut Vec<(u32, f64)>) + Sync,
+    ) -> Result<HeldSystem, Error> {
+        let found = match before {
+            Some(before) => before.renew(row),
+            None => HeldSystem::new(self.unknowns.clone(), row),
+        };
+        found.map_err(|e| Error::IllConditioned { at: self.moved.mesh.position(VertexId::from(e.unknown)) })
     }
 
     /// The points in the input's place and size; vertices that are not free have the input's bits.
     pub fn finish(self) -> Vec<DVec3> {
         let mesh = self.moved.mesh;
         let mut points: Vec<DVec3> = mesh.vertex_ids().map(|v| mesh.position(v)).collect();
-        for &v in &self.free {
+        for &v in self.unknowns.free() {
             points[v as usize] = self.center + self.scale * self.moved.points[v as usize];
         }
         points
     }
+}
+
+/// Area around each inner vertex; 0 on the boundary, where the Laplacian of a surface that ends is not its bending.
+pub(super) fn inner_areas<M: Adjacency + Positions + Sync>(mesh: &M) -> Vec<f64> {
+    let mut areas = vertex_areas(mesh).into_vec();
+    for v in mesh.vertex_ids() {
+        if mesh.outgoing(v).is_none_or(|h| mesh.twin(h).is_none()) {
+            areas[v.index()] = 0.0;
+        }
+    }
+    areas
 }

@@ -1,10 +1,8 @@
 //! Smoothing and fairing: vertices move, triangles stay.
 
-mod cholesky;
 mod fair;
 mod flow;
 mod held;
-mod laplace;
 mod taubin;
 
 pub use fair::{Fairing, Fairness, fair};

@@ -54,7 +54,7 @@ pub fn taubin<M: Adjacency + Positions + Sync>(
     let mut task = Task::new(mesh, frozen)?;
     let mut starts = vec![0];
     let mut neighbours: Vec<u32> = vec![];
-    for &v in &task.free {
+    for &v in task.free() {
         neighbours.extend(mesh.ring(VertexId(v)).map(|h| mesh.head(h).0));
         starts.push(neighbours.len());
     }
@@ -64,12 +64,12 @@ pub fn taubin<M: Adjacency + Positions + Sync>(
         for share in [lambda, mu] {
             let points = &task.moved.points;
             let at = |i: usize| {
-                let (p, ring) = (points[task.free[i] as usize], &neighbours[starts[i]..starts[i + 1]]);
+                let (p, ring) = (points[task.free()[i] as usize], &neighbours[starts[i]..starts[i + 1]]);
                 let mean = ring.iter().map(|&n| points[n as usize]).sum::<DVec3>() / ring.len() as f64;
                 p + share * (mean - p)
             };
-            (0..task.free.len()).into_par_iter().with_min_len(CHUNK).map(at).collect_into_vec(&mut next);
-            for (&v, &p) in task.free.iter().zip(&next) {
+            (0..task.free().len()).into_par_iter().with_min_len(CHUNK).map(at).collect_into_vec(&mut next);
+            for (&v, &p) in task.unknowns.free().iter().zip(&next) {
                 task.moved.points[v as usize] = p;
             }
         }

@@ -1,7 +1,7 @@
 //! Where points lie along the edges that carry them: by pairs of doubles with a bound on the error, and exactly where
 //! that does not tell two points apart.
 
-use super::{Key, Part, Simplex};
+use super::part::{Key, Part, Simplex};
 use crate::exact::{Expansion, PAIR_ERROR, Pair, cross2, volume, volume_pair};
 use crate::predicate::{facing, project};
 use glam::DVec3;

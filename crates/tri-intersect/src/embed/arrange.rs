@@ -1,7 +1,7 @@
 //! The result's vertices, the points sorted along each edge, and the pieces of curve sorted by the face they run through.
 
-use super::EmbedError;
-use super::face::{Clash, Site};
+use super::clash::{Clash, Site};
+use super::error::EmbedError;
 use super::normalise::Chain;
 use glam::DVec3;
 use mesh_core::{Adjacency, FaceId, HalfedgeId, Positions, SurfacePoint, VertexId};

@@ -1,26 +1,12 @@
 //! The triangulation of one crossed face: a polygon of its corners and the points on its sides, with pieces of curve in it.
 
 use super::arrange::{Arrangement, Segment};
+use super::clash::Clash;
 use super::small;
 use glam::DVec3;
 use mesh_core::{Adjacency, FaceId, HalfedgeId, Positions, SurfacePoint, VertexId};
 use robust::{Coord, orient2d};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
-
-/// A node of a chain; names also the piece of curve that begins there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Site {
-    pub curve: usize,
-    pub node: usize,
-}
-
-/// Two things that meet and should not. A site is `None` where it is no curve but a corner or side of the face.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Clash {
-    pub place: DVec3,
-    pub face: FaceId,
-    pub sites: [Option<Site>; 2],
-}
 
 /// The pieces of a face.
 pub(super) struct Split {

@@ -1,6 +1,7 @@
 //! Curve points as canonical addresses: one name for each place, nothing nearer to a vertex or an edge than the snap.
 
-use super::{EmbedError, EmbedParams, SurfaceCurve};
+use super::curve::{EmbedParams, SurfaceCurve};
+use super::error::EmbedError;
 use mesh_core::{Adjacency, HalfedgeId, Positions, SurfacePoint};
 
 /// Snap of points that must stay where they are: below it the new edge would vanish in rounding.

@@ -1,30 +1,18 @@
-//! Cotangent weights, mixed areas and mean-curvature vectors.
+//! Mixed areas and mean-curvature vectors.
 
-use crate::ids::{FaceId, HalfedgeId, VertexId};
-use crate::map::{CornerMap, VertexMap};
-use crate::traits::{Adjacency, Faces, Positions};
+use crate::ids::VertexId;
+use crate::map::VertexMap;
+use crate::traits::{Adjacency, Positions};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// The cotangent of the angle at each corner; 0 at all corners of a triangle without area. O(n), parallel.
-pub fn cotangents<M: Faces + Positions + Sync>(mesh: &M) -> CornerMap<f64> {
-    let faces = (0..mesh.face_count() as u32).into_par_iter();
-    let values: Vec<[f64; 3]> = faces.map(|f| triangle_cotangents(mesh.triangle(FaceId(f)))).collect();
-    values.into_flattened().into()
-}
-
+/// The cotangent of the angle at each corner; 0 where a triangle has no area.
 fn triangle_cotangents(p: [DVec3; 3]) -> [f64; 3] {
     let twice_area = (p[1] - p[0]).cross(p[2] - p[0]).length();
     [0, 1, 2].map(|k| {
         let cotangent = (p[(k + 1) % 3] - p[k]).dot(p[(k + 2) % 3] - p[k]) / twice_area;
         if cotangent.is_finite() { cotangent } else { 0.0 }
     })
-}
-
-/// The weight ½(cot α + cot β) of the edge of `h`, α and β the angles facing it; one term on the boundary
-/// (\[PinkallPolthier1993\]). Negative where the edge is not Delaunay.
-pub fn cotangent_weight(mesh: &impl Adjacency, cotangents: &CornerMap<f64>, h: HalfedgeId) -> f64 {
-    0.5 * (cotangents[h.prev()] + mesh.twin(h).map_or(0.0, |t| cotangents[t.prev()]))
 }
 
 /// The share of the surface that belongs to each vertex: Voronoi areas, cut at the middle of obtuse triangles so that
@@ -75,26 +63,16 @@ fn area_gradient(p: [DVec3; 3]) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Connected, area, shapes};
+    use crate::{Connected, Faces, area, shapes};
     use proptest::prelude::*;
 
     #[test]
-    fn areas_add_up_and_constants_and_planes_are_harmonic() {
+    fn areas_add_up_and_planes_are_flat() {
         let blob = Connected::new(shapes::blob(1.0, 3, 0.6, 4)).unwrap();
         let total: f64 = mixed_areas(&blob).as_slice().iter().sum();
         assert!((total - area(&blob)).abs() < 1e-12 * total);
         let plane = Connected::new(shapes::grid(2.0, 1.0, 7, 5)).unwrap();
         assert!(mean_curvature_vectors(&plane).as_slice().iter().all(|k| k.length() < 1e-12));
-        let cot = cotangents(&plane);
-        for v in plane.vertex_ids().filter(|&v| plane.ring(v).all(|h| plane.twin(h).is_some())) {
-            if plane.outgoing(v).is_some_and(|h| plane.twin(h).is_none()) {
-                continue;
-            }
-            // x² + y² has the Laplacian 4: Σ w (f_j − f_i) = 4 · area for this regular grid.
-            let f = |v| plane.position(v).length_squared();
-            let flow: f64 = plane.ring(v).map(|h| cotangent_weight(&plane, &cot, h) * (f(plane.head(h)) - f(v))).sum();
-            assert!((flow - 4.0 * (2.0 / 7.0) * (1.0 / 5.0)).abs() < 1e-12, "{flow}");
-        }
     }
 
     #[test]
