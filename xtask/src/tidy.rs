@@ -57,7 +57,8 @@ pub fn run() -> Result<(), Fault> {
 
 /// Every dependency that is not in the table.
 fn arrows() -> Result<Vec<String>, Fault> {
-    let table = Table::of(&fs::read_to_string(root().join(TABLE))?);
+    let page = fs::read_to_string(root().join(TABLE))?;
+    let table = Table::of(&page);
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--no-deps", "--format-version", "1"])
         .current_dir(root())

@@ -1,15 +1,16 @@
 //! What can be typed.
 
-use crate::choosing::{Choosing, ChoosingSeams};
-use crate::clustering::Cluster;
-use crate::composing::Compose;
-use crate::cutting::{Cut, spread_path};
-use crate::detailing::Detail;
-use crate::length::{Length, Radius, angle, angle_or_none, direction, positive_length, radius, seconds};
-use crate::place::Place;
-use crate::rolling::Rolling;
-use crate::smoothing::Way;
-use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use crate::length::{angle, seconds};
+use crate::verbs::blend::BlendArgs;
+use crate::verbs::boolean::BooleanArgs;
+use crate::verbs::cluster::ClusterArgs;
+use crate::verbs::compose::ComposeArgs;
+use crate::verbs::cut::{CutArgs, spread_path};
+use crate::verbs::detail::DetailArgs;
+use crate::verbs::remesh::RemeshArgs;
+use crate::verbs::sharpen::SharpenArgs;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use fusion::operation::{Length, direction};
 use glam::DVec3;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -69,27 +70,29 @@ pub enum Verb {
     /// List the feature curves of a mesh
     Features(Features),
     /// Join solids into one
-    Union(Join),
+    Union(BooleanArgs),
     /// Take all other solids away from the first
-    Difference(Join),
+    Difference(BooleanArgs),
     /// Keep what all solids share
-    Intersection(Join),
+    Intersection(BooleanArgs),
     /// Fillet feature curves with a rolling ball; `chamfer` stands for `blend --profile chamfer`
     #[command(visible_alias = "fillet")]
-    Blend(Blend),
+    Blend(BlendArgs),
     /// Chamfer feature curves: `blend --profile chamfer`
-    #[command(hide = true)]
-    Chamfer(Blend),
+    #[command(hide = true, mut_arg("profile", |a| a.hide(true).default_value("chamfer")))]
+    Chamfer(BlendArgs),
+    /// Take fillets back to edges
+    Sharpen(SharpenArgs),
     /// Join the openings of parts by one smooth surface, leaving the parts as they are
-    Compose(Compose),
+    Compose(ComposeArgs),
     /// Give a smooth region the geometry detail of another
-    Detail(Detail),
+    Detail(DetailArgs),
     /// Round a polyhedron: one patch for each cluster of its edges, in contact with the faces around
-    Cluster(Cluster),
+    Cluster(ClusterArgs),
     /// Make triangles even; boundaries and features are kept
-    Remesh(Remesh),
+    Remesh(RemeshArgs),
     /// Take away what lies beyond a plane or a path over the surface, leaving a clean opening
-    Cut(Cut),
+    Cut(CutArgs),
     /// Replay a recipe: parts, cuts, poses, joins and blends from one TOML file
     Run(Run),
     /// Draw a still picture
@@ -98,6 +101,8 @@ pub enum Verb {
     Demo(Demo),
     /// Print a script that lets a shell complete verbs, options and files
     Completions(Completions),
+    /// Print the JSON schema of operations and their options
+    Schema,
     /// Print the manual page, or write one for every verb
     Man(Man),
 }
@@ -113,6 +118,7 @@ impl Verb {
             Self::Difference(_) => "difference",
             Self::Intersection(_) => "intersection",
             Self::Blend(_) | Self::Chamfer(_) => "blend",
+            Self::Sharpen(_) => "sharpen",
             Self::Compose(_) => "compose",
             Self::Detail(_) => "detail",
             Self::Cluster(_) => "cluster",
@@ -122,6 +128,7 @@ impl Verb {
             Self::Render(_) => "render",
             Self::Demo(_) => "demo",
             Self::Completions(_) => "completions",
+            Self::Schema => "schema",
             Self::Man(_) => "man",
         }
     }
@@ -199,28 +206,6 @@ pub struct Features {
     pub source: Source,
 }
 
-#[derive(Args)]
-#[command(group(ArgGroup::new("ball").multiple(true)))]
-pub struct Join {
-    /// The solids, two or more, as they are posed in their files
-    #[arg(required = true, num_args = 2.., value_name = "MESH")]
-    pub inputs: Vec<PathBuf>,
-    #[command(flatten)]
-    pub target: OptionalTarget,
-    #[command(flatten)]
-    pub source: Source,
-    /// Blend the seam with a ball of this radius; with `R1,R2` its centre keeps R1 from the first part and R2 from the
-    /// other
-    #[arg(long, value_name = "R[,R2]", value_parser = radius, group = "ball")]
-    pub radius: Option<Radius>,
-    #[command(flatten)]
-    pub limit: MaxRadius,
-    #[command(flatten)]
-    pub choosing: ChoosingSeams,
-    #[command(flatten)]
-    pub rolling: Rolling,
-}
-
 /// Where a mesh goes, if one is made.
 #[derive(Args)]
 pub struct OptionalTarget {
@@ -252,58 +237,6 @@ pub struct MaxRadius {
     /// Print JSON instead of a sentence, with --max-radius
     #[arg(long, requires = "max_radius")]
     pub json: bool,
-}
-
-#[derive(Args)]
-#[command(group(ArgGroup::new("ball").multiple(true)))]
-pub struct Blend {
-    /// The mesh to blend
-    pub input: PathBuf,
-    #[command(flatten)]
-    pub target: OptionalTarget,
-    #[command(flatten)]
-    pub source: Source,
-    /// Radius of the ball; with `R1,R2` its centre keeps R1 from the side to the left of a curve and R2 from the other,
-    /// seen from outside along the points that `features` lists. With `--profile sharp --near` on a fillet: what is rounded by
-    /// R or less is taken back to an edge [default there: as it is rounded at that place]
-    #[arg(long, value_name = "R[,R2]", value_parser = radius, group = "ball")]
-    pub radius: Option<Radius>,
-    #[command(flatten)]
-    pub limit: MaxRadius,
-    /// Least angle between the normals of two neighbouring faces that makes their edge a feature
-    #[arg(long, value_name = "DEG", default_value = "40", value_parser = angle)]
-    pub angle: f64,
-    #[command(flatten)]
-    pub choosing: Choosing,
-    #[command(flatten)]
-    pub rolling: Rolling,
-}
-
-#[derive(Args)]
-pub struct Remesh {
-    /// The mesh to smooth and remesh
-    pub input: PathBuf,
-    #[command(flatten)]
-    pub target: Target,
-    #[command(flatten)]
-    pub source: Source,
-    /// Wanted edge length; without it the triangles stay
-    #[arg(long, value_name = "L", value_parser = positive_length, required_unless_present = "smooth")]
-    pub edge_length: Option<Length>,
-    /// Move the vertices first: taubin or taubin=ROUNDS (keeps the volume), flow=LENGTH (halves waves of this length and
-    /// all but removes shorter ones, shrinking), or harmonic, biharmonic, triharmonic (the region becomes the fairest
-    /// surface that continues what is around it)
-    #[arg(long, value_name = "WAY")]
-    pub smooth: Option<Way>,
-    /// Rounds of splitting, collapsing, flipping and relaxing
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
-    pub iterations: u16,
-    /// Work on these faces only: near=X,Y,Z,RADIUS, group=NAME, origin=STAGE, or a file of face ids
-    #[arg(long, value_name = "REGION", allow_hyphen_values = true)]
-    pub region: Option<Place>,
-    /// Least angle between the normals of two neighbouring faces that makes their edge a feature; 180 keeps none
-    #[arg(long, value_name = "DEG", default_value = "40", value_parser = angle_or_none)]
-    pub angle: f64,
 }
 
 #[derive(Args)]
@@ -404,7 +337,7 @@ mod tests {
             "fusion-cli cut --path -1,0,0 0,-1,0 --path 1,0,0 a.obj -o b.obj",
         ] {
             let Verb::Cut(cut) = parse(line).unwrap().verb else { panic!("{line}") };
-            assert_eq!((cut.path.len(), cut.input), (3, "a.obj".into()), "{line}");
+            assert_eq!((cut.cut.path.len(), cut.input), (3, "a.obj".into()), "{line}");
         }
         assert!(parse("fusion-cli cut a.obj -o b.obj").is_err());
         assert!(parse("fusion-cli cut a.obj -o b.obj --plane 0,0,0,0,0,1 --path 0,0,0").is_err());
