@@ -9,7 +9,7 @@ use crate::verbs::cut::{CutArgs, spread_path};
 use crate::verbs::detail::DetailArgs;
 use crate::verbs::remesh::RemeshArgs;
 use crate::verbs::sharpen::SharpenArgs;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use fusion::operation::{Length, direction};
 use glam::DVec3;
 use std::ffi::OsString;
@@ -38,26 +38,33 @@ own validation; 6 the output cannot be written; 130 cancelled. Any code but 0 le
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag that can be typed")]
 pub struct Common {
     /// Write a machine-readable report of the job (docs/report.md lists its keys)
-    #[arg(long, value_name = "FILE.json", global = true, help_heading = "Common options")]
+    #[arg(long, value_name = "FILE.json", global = true, hide_short_help = true, help_heading = "Common options")]
     pub report: Option<PathBuf>,
     /// Use this many threads; the result is the same for any number
-    #[arg(long, value_name = "N", global = true, help_heading = "Common options",
+    #[arg(long, value_name = "N", global = true, hide_short_help = true, help_heading = "Common options",
           value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Show no progress: neither a bar on a terminal nor a line every five seconds elsewhere
-    #[arg(long, global = true, help_heading = "Common options")]
+    #[arg(long, global = true, hide_short_help = true, help_heading = "Common options")]
     pub no_progress: bool,
     /// Say nothing but errors
-    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Common options")]
+    #[arg(
+        short,
+        long,
+        global = true,
+        hide_short_help = true,
+        conflicts_with = "verbose",
+        help_heading = "Common options"
+    )]
     pub quiet: bool,
     /// Say what was chosen, what each stage did and how long it took
-    #[arg(short, long, global = true, help_heading = "Common options")]
+    #[arg(short, long, global = true, hide_short_help = true, help_heading = "Common options")]
     pub verbose: bool,
     /// Count any warning as a failure: exit code 4, and no output
-    #[arg(long, global = true, help_heading = "Common options")]
+    #[arg(long, global = true, hide_short_help = true, help_heading = "Common options")]
     pub strict: bool,
     /// Stop with exit code 4 after this many seconds
-    #[arg(long, value_name = "S", global = true, help_heading = "Common options", value_parser = seconds)]
+    #[arg(long, value_name = "S", global = true, hide_short_help = true, help_heading = "Common options", value_parser = seconds)]
     pub time_limit: Option<Duration>,
 }
 
@@ -138,7 +145,7 @@ impl Verb {
 #[derive(Args)]
 pub struct Source {
     /// Read inputs as this format (obj, stl, ply, off, glb, gltf, 3mf), whatever their extension; needed for `-`
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, hide_short_help = true, value_name = "FORMAT")]
     pub from: Option<String>,
 }
 
@@ -149,10 +156,10 @@ pub struct Target {
     #[arg(short, long, value_name = "OUTPUT")]
     pub output: PathBuf,
     /// Format of the output, where its extension does not tell; needed for `-`
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, hide_short_help = true, value_name = "FORMAT")]
     pub to: Option<String>,
     /// Write where every vertex and face of the result came from, as JSON
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, hide_short_help = true, value_name = "FILE.json")]
     pub origins: Option<PathBuf>,
 }
 
@@ -213,10 +220,10 @@ pub struct OptionalTarget {
     #[arg(short, long, value_name = "OUTPUT", required_unless_present = "max_radius")]
     pub output: Option<PathBuf>,
     /// Format of the output, where its extension does not tell; needed for `-`
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, hide_short_help = true, value_name = "FORMAT")]
     pub to: Option<String>,
     /// Write where every vertex and face of the result came from, as JSON
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, hide_short_help = true, value_name = "FILE.json")]
     pub origins: Option<PathBuf>,
 }
 
@@ -247,10 +254,10 @@ pub struct Run {
     #[arg(short, long, value_name = "OUTPUT")]
     pub output: Option<PathBuf>,
     /// Format of the output, where its extension does not tell; needed for `-`
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, hide_short_help = true, value_name = "FORMAT")]
     pub to: Option<String>,
     /// Write where every vertex and face of the result came from, as JSON
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, hide_short_help = true, value_name = "FILE.json")]
     pub origins: Option<PathBuf>,
 }
 
@@ -267,7 +274,7 @@ pub struct Render {
     #[arg(long, value_enum)]
     pub color: Option<Color>,
     /// Where each face comes from, as `--origins` of another verb wrote it
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, hide_short_help = true, value_name = "FILE.json")]
     pub origins: Option<PathBuf>,
     /// Draw the edges
     #[arg(long)]
@@ -316,6 +323,14 @@ pub struct Man {
     pub output: Option<PathBuf>,
 }
 
+/// The command line, with a line in every verb's short help that names the options of all verbs.
+pub fn command() -> clap::Command {
+    Cli::command().mut_subcommands(|verb| verb.after_help(COMMON_HELP))
+}
+
+const COMMON_HELP: &str = "\
+Of every verb: --report FILE, --strict, --quiet, -v, --threads N, --time-limit S; more with --help.";
+
 /// Gives `--weld` its default where a file name follows it, which clap would take for the tolerance, and repeats `--path` before each
 /// of several points, which clap would take for options where they start with a minus.
 pub fn with_bare_weld(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
@@ -328,7 +343,6 @@ pub fn with_bare_weld(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsSt
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn a_path_takes_several_points() {
@@ -350,6 +364,20 @@ mod tests {
     #[test]
     fn the_definition_is_sound() {
         Cli::command().debug_assert();
+    }
+
+    /// A screen has 45 lines of 100 columns.
+    #[test]
+    fn short_help_fits_on_a_screen() {
+        let mut wrong = vec![];
+        for verb in command().get_subcommands_mut() {
+            let help = verb.render_help().to_string();
+            let lines = help.lines().count();
+            if lines > 45 || help.lines().any(|line| line.chars().count() > 100) {
+                wrong.push(format!("{}: {lines} lines\n{help}", verb.get_name()));
+            }
+        }
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     }
 
     #[test]

@@ -29,7 +29,7 @@ mod text_file;
 mod verbs;
 
 use args::{Cli, Verb, with_bare_weld};
-use clap::Parser;
+use clap::FromArgMatches;
 use failure::Failure;
 use fusion::operation::SetOperation;
 use session::Session;
@@ -38,8 +38,8 @@ use std::process::ExitCode;
 
 /// Runs one command line, whose first argument is the program's name, and gives its exit code.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let cli = Cli::parse_from(verbs::detail::with_curves(with_bare_weld(arguments)));
-    match run(cli) {
+    let matches = args::command().get_matches_from(verbs::detail::with_curves(with_bare_weld(arguments)));
+    match Cli::from_arg_matches(&matches).map_err(Failure::usage).and_then(run) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

@@ -57,7 +57,7 @@ operation! {
         #[cfg_attr(feature = "clap", arg(long, value_name = "CURVES.json", help_heading = "Which curves"))]
         curves: Option<Linked<Vec<Picked>>> = None;
         /// Blend the seams of an earlier boolean: the edges between faces of different parts in the file of its origins
-        #[cfg_attr(feature = "clap", arg(long, value_name = "ORIGINS.json", help_heading = "Which curves"))]
+        #[cfg_attr(feature = "clap", arg(long, hide_short_help = true, value_name = "ORIGINS.json", help_heading = "Which curves"))]
         seams: Option<Linked<Vec<Option<u32>>>> = None;
         /// Take the feature curves that continue a named one, too: from its end, within 25 degrees
         #[cfg_attr(feature = "clap", arg(long, help_heading = "Which curves"))]
@@ -68,11 +68,11 @@ operation! {
         longer: Option<Length> = None;
         /// Only curves whose every edge is parallel to this direction, or to one of several, within 5 degrees
         #[schemars(with = "Vec<[f64; 3]>")]
-        #[cfg_attr(feature = "clap", arg(long, value_name = "X,Y,Z", value_parser = super::place::direction,
+        #[cfg_attr(feature = "clap", arg(long, hide_short_help = true, value_name = "X,Y,Z", value_parser = super::place::direction,
             allow_hyphen_values = true, help_heading = "Which curves"))]
         along: Vec<DVec3> = vec![];
         /// Only curves inside or on this closed solid
-        #[cfg_attr(feature = "clap", arg(long, value_name = "MESH", help_heading = "Which curves"))]
+        #[cfg_attr(feature = "clap", arg(long, hide_short_help = true, value_name = "MESH", help_heading = "Which curves"))]
         within: Option<Linked<Solid>> = None;
         /// Only ridges, as the edges of a box
         #[cfg_attr(feature = "clap", arg(long, conflicts_with = "concave", help_heading = "Which curves"))]

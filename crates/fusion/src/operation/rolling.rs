@@ -66,7 +66,7 @@ macro_rules! with_rolling_options {
             profile: Section = Section::default();
             /// Distance of the cross-section's apex from the ball's centre, in radii, where it is moved out along its line
             #[schemars(range(min = *$crate::operation::section::REACH.start(), max = *$crate::operation::section::REACH.end()))]
-            #[cfg_attr(feature = "clap", arg(long, value_name = "RADII", help_heading = "Blend options", requires = "ball"))]
+            #[cfg_attr(feature = "clap", arg(long, hide_short_help = true, value_name = "RADII", help_heading = "Blend options", requires = "ball"))]
             reach: Option<f64> = None;
             /// Radius at the place of a curve nearest to X,Y,Z; may be given more than once
             ///
@@ -79,7 +79,7 @@ macro_rules! with_rolling_options {
             ///
             /// Between such places, and to the profile of the whole at the ends of an open curve and half-way round a closed
             /// one with a single place, one changes smoothly into the other.
-            #[cfg_attr(feature = "clap", arg(long, value_name = "X,Y,Z=PROFILE", help_heading = "Blend options",
+            #[cfg_attr(feature = "clap", arg(long, hide_short_help = true, value_name = "X,Y,Z=PROFILE", help_heading = "Blend options",
                 requires = "ball", allow_hyphen_values = true))]
             profile_at: Vec<ProfileAt> = vec![];
             /// What to do where a ball of the full radius does not fit

@@ -25,12 +25,20 @@ pub fn schema() -> Value {
     add(Detail::NAME, generator.subschema_for::<Detail>());
     add(Remesh::NAME, generator.subschema_for::<Remesh>());
     add(Sharpen::NAME, generator.subschema_for::<Sharpen>());
+    let mut definitions = generator.take_definitions(true);
+    for definition in definitions.values_mut() {
+        // Examples are for readers of the library.
+        let whole = definition["description"].as_str().map(first_paragraph);
+        if let Some(whole) = whole {
+            definition["description"] = whole.into();
+        }
+    }
     json!({
         "$schema": generator.settings().meta_schema.as_deref(),
         "title": "Operations",
         "type": "object",
         "properties": properties,
-        "$defs": generator.take_definitions(true),
+        "$defs": definitions,
     })
 }
 
@@ -56,13 +64,13 @@ pub fn option_rows<O: JsonSchema>() -> Vec<OptionRow> {
         name: name.clone(),
         takes: takes(&root, property),
         default: default(&property["default"]),
-        meaning: first_sentence(property["description"].as_str().unwrap_or_default()),
+        meaning: first_paragraph(property["description"].as_str().unwrap_or_default()).replace('|', "\\|"),
     };
     properties.map(row).collect()
 }
 
-fn first_sentence(text: &str) -> String {
-    text.split("\n\n").next().unwrap_or_default().replace('\n', " ").replace('|', "\\|")
+fn first_paragraph(text: &str) -> String {
+    text.split("\n\n").next().unwrap_or_default().replace('\n', " ")
 }
 
 fn default(value: &Value) -> String {
@@ -111,7 +119,10 @@ fn takes(root: &Value, schema: &Value) -> String {
         (Some("boolean"), _) => "`true`, `false`".into(),
         (Some("string"), _) => "text".into(),
         (Some("array"), _) if schema["items"]["type"] == "number" && schema["maxItems"] == 3 => "x, y, z".into(),
-        (Some("array"), _) => format!("list of {}", takes(root, &schema["items"])),
+        (Some("array"), _) => {
+            let item = takes(root, &schema["items"]);
+            format!("list of {}", if item == "whole number" { "whole numbers".into() } else { item })
+        }
         _ => {
             let keys = schema["properties"].as_object().into_iter().flatten();
             let keys: Vec<String> = keys.map(|(key, value)| format!("`{key}` ({})", takes(root, value))).collect();
@@ -137,7 +148,7 @@ mod tests {
             ("tolerance", "1e-6 to 0.5", "0.005"),
             ("overlap", "`full`, `shrink`, `error`", "`full`"),
             ("angle", "between 0 and 180", "40"),
-            ("ids", "list of whole number", ""),
+            ("ids", "list of whole numbers", ""),
             ("along", "list of x, y, z", ""),
             ("curves", "path", ""),
             ("chain", "`true`, `false`", ""),
