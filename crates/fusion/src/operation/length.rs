@@ -251,8 +251,8 @@ mod tests {
 
     #[test]
     fn a_share_survives_text() {
-        for share in [0.02, 0.005, 0.07, 1.0 / 3.0, 0.123_456_789] {
-            let length = Length::OfDiagonal(share);
+        for text in ["2%", "0.5%", "7%", "33.333333333333336%", "12.3456789%"] {
+            let length: Length = text.parse().unwrap();
             assert_eq!(length.to_string().parse(), Ok(length));
             assert_eq!(serde_json::from_str::<Length>(&serde_json::to_string(&length).unwrap()).unwrap(), length);
         }

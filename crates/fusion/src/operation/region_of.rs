@@ -6,7 +6,10 @@ use super::place::point;
 use super::region::RegionArg;
 use glam::DVec3;
 use schemars::JsonSchema;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -99,18 +102,27 @@ impl RegionOf {
     }
 }
 
-/// One region, or a list of them.
+/// One region, or a list of them. Read as they come, so that what is wrong is told by its place.
 pub(super) fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<RegionOf>, D::Error> {
-    #[derive(Deserialize)]
-    #[serde(untagged, expecting = "a region is near and radius (above 0), or group, or origin; or a list of such")]
-    enum Either {
-        One(RegionOf),
-        Many(Vec<RegionOf>),
+    struct Either;
+
+    impl<'de> Visitor<'de> for Either {
+        type Value = Vec<RegionOf>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a region, or a list of regions")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+            RegionOf::deserialize(MapAccessDeserializer::new(map)).map(|region| vec![region])
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
+            Vec::deserialize(SeqAccessDeserializer::new(list))
+        }
     }
-    Ok(match Either::deserialize(deserializer)? {
-        Either::One(region) => vec![region],
-        Either::Many(regions) => regions,
-    })
+
+    deserializer.deserialize_any(Either)
 }
 
 /// Points of a curve, in text apart by spaces.

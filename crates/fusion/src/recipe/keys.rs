@@ -170,6 +170,9 @@ mod tests {
         assert_eq!(TABLES.iter().map(|t| t.name).collect::<Vec<_>>(), read.each_ref().map(|r| r.0));
         for (table, (name, read)) in TABLES.iter().zip(read) {
             let mut listed: Vec<_> = table.keys().map(|k| k.name).collect();
+            // Steps are taken out before the rest is read.
+            listed
+                .retain(|key| name != "recipe" || !["blend", "boolean", "cluster", "compose", "detail"].contains(key));
             listed.sort_unstable();
             assert_eq!(listed, read, "{name}");
             // What keys hold must be in the list, or it would never be looked into.
