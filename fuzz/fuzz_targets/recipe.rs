@@ -1,8 +1,10 @@
 #![no_main]
 //! Recipes: what parses is replayed as far as its parts' places, on a pipe for each part; what does not names a line of the text.
 
-use fusion::mesh_core::{Watch, shapes};
+use fusion::mesh_core::{TriMesh, Watch, shapes};
+use fusion::operation::Files;
 use fusion::{Recipe, recipe};
+use std::path::Path;
 
 /// More parts only cost time.
 const MOST_PARTS: usize = 6;
@@ -15,6 +17,19 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     }
 });
 
+/// A text in the place of every file.
+struct Itself<'a>(&'a str);
+
+impl Files for Itself<'_> {
+    fn text(&mut self, _: &Path) -> Result<String, String> {
+        Ok(self.0.into())
+    }
+
+    fn mesh(&mut self, _: &Path) -> Result<TriMesh, String> {
+        Ok(shapes::open_cylinder(1.0, 2.0, 8, 3))
+    }
+}
+
 fn check(error: &recipe::Error, text: &str) {
     assert!(!error.message.is_empty());
     assert!((1..=text.lines().count().max(1) + 1).contains(&error.line), "{error}");
@@ -24,7 +39,7 @@ fn check(error: &recipe::Error, text: &str) {
 fn replay(mut recipe: Recipe, text: &str) {
     assert!(!recipe.parts.is_empty() && recipe.order().len() <= recipe::Step::ORDER.len());
     // The recipe itself in the place of a file of curves: anything may stand there.
-    if let Err(error) = recipe.read_curves(|_| Ok(text.to_string())) {
+    if let Err(error) = recipe.load(&mut Itself(text)) {
         check(&error, text);
     }
     if recipe.parts.len() > MOST_PARTS {

@@ -1,15 +1,16 @@
 //! What can be typed.
 
-use crate::choosing::{Choosing, ChoosingSeams};
-use crate::clustering::Cluster;
-use crate::composing::Compose;
-use crate::cutting::{Cut, spread_path};
-use crate::detailing::Detail;
-use crate::length::{Length, Radius, angle, angle_or_none, direction, positive_length, radius, seconds};
-use crate::place::Place;
-use crate::rolling::Rolling;
-use crate::smoothing::Way;
-use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use crate::length::{angle, seconds};
+use crate::verbs::blend::BlendArgs;
+use crate::verbs::boolean::BooleanArgs;
+use crate::verbs::cluster::ClusterArgs;
+use crate::verbs::compose::ComposeArgs;
+use crate::verbs::cut::{CutArgs, spread_path};
+use crate::verbs::detail::DetailArgs;
+use crate::verbs::remesh::RemeshArgs;
+use crate::verbs::sharpen::SharpenArgs;
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use fusion::operation::{Length, direction};
 use glam::DVec3;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -37,26 +38,33 @@ own validation; 6 the output cannot be written; 130 cancelled. Any code but 0 le
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag that can be typed")]
 pub struct Common {
     /// Write a machine-readable report of the job (docs/report.md lists its keys)
-    #[arg(long, value_name = "FILE.json", global = true, help_heading = "Common options")]
+    #[arg(long, value_name = "FILE.json", global = true, hide_short_help = true, help_heading = "Common options")]
     pub report: Option<PathBuf>,
     /// Use this many threads; the result is the same for any number
-    #[arg(long, value_name = "N", global = true, help_heading = "Common options",
+    #[arg(long, value_name = "N", global = true, hide_short_help = true, help_heading = "Common options",
           value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Show no progress: neither a bar on a terminal nor a line every five seconds elsewhere
-    #[arg(long, global = true, help_heading = "Common options")]
+    #[arg(long, global = true, hide_short_help = true, help_heading = "Common options")]
     pub no_progress: bool,
     /// Say nothing but errors
-    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Common options")]
+    #[arg(
+        short,
+        long,
+        global = true,
+        hide_short_help = true,
+        conflicts_with = "verbose",
+        help_heading = "Common options"
+    )]
     pub quiet: bool,
     /// Say what was chosen, what each stage did and how long it took
-    #[arg(short, long, global = true, help_heading = "Common options")]
+    #[arg(short, long, global = true, hide_short_help = true, help_heading = "Common options")]
     pub verbose: bool,
     /// Count any warning as a failure: exit code 4, and no output
-    #[arg(long, global = true, help_heading = "Common options")]
+    #[arg(long, global = true, hide_short_help = true, help_heading = "Common options")]
     pub strict: bool,
     /// Stop with exit code 4 after this many seconds
-    #[arg(long, value_name = "S", global = true, help_heading = "Common options", value_parser = seconds)]
+    #[arg(long, value_name = "S", global = true, hide_short_help = true, help_heading = "Common options", value_parser = seconds)]
     pub time_limit: Option<Duration>,
 }
 
@@ -69,27 +77,29 @@ pub enum Verb {
     /// List the feature curves of a mesh
     Features(Features),
     /// Join solids into one
-    Union(Join),
+    Union(BooleanArgs),
     /// Take all other solids away from the first
-    Difference(Join),
+    Difference(BooleanArgs),
     /// Keep what all solids share
-    Intersection(Join),
+    Intersection(BooleanArgs),
     /// Fillet feature curves with a rolling ball; `chamfer` stands for `blend --profile chamfer`
     #[command(visible_alias = "fillet")]
-    Blend(Blend),
+    Blend(BlendArgs),
     /// Chamfer feature curves: `blend --profile chamfer`
-    #[command(hide = true)]
-    Chamfer(Blend),
+    #[command(hide = true, mut_arg("profile", |a| a.hide(true).default_value("chamfer")))]
+    Chamfer(BlendArgs),
+    /// Take fillets back to edges
+    Sharpen(SharpenArgs),
     /// Join the openings of parts by one smooth surface, leaving the parts as they are
-    Compose(Compose),
+    Compose(ComposeArgs),
     /// Give a smooth region the geometry detail of another
-    Detail(Detail),
+    Detail(DetailArgs),
     /// Round a polyhedron: one patch for each cluster of its edges, in contact with the faces around
-    Cluster(Cluster),
+    Cluster(ClusterArgs),
     /// Make triangles even; boundaries and features are kept
-    Remesh(Remesh),
+    Remesh(RemeshArgs),
     /// Take away what lies beyond a plane or a path over the surface, leaving a clean opening
-    Cut(Cut),
+    Cut(CutArgs),
     /// Replay a recipe: parts, cuts, poses, joins and blends from one TOML file
     Run(Run),
     /// Draw a still picture
@@ -98,6 +108,8 @@ pub enum Verb {
     Demo(Demo),
     /// Print a script that lets a shell complete verbs, options and files
     Completions(Completions),
+    /// Print the JSON schema of operations and their options
+    Schema,
     /// Print the manual page, or write one for every verb
     Man(Man),
 }
@@ -113,6 +125,7 @@ impl Verb {
             Self::Difference(_) => "difference",
             Self::Intersection(_) => "intersection",
             Self::Blend(_) | Self::Chamfer(_) => "blend",
+            Self::Sharpen(_) => "sharpen",
             Self::Compose(_) => "compose",
             Self::Detail(_) => "detail",
             Self::Cluster(_) => "cluster",
@@ -122,6 +135,7 @@ impl Verb {
             Self::Render(_) => "render",
             Self::Demo(_) => "demo",
             Self::Completions(_) => "completions",
+            Self::Schema => "schema",
             Self::Man(_) => "man",
         }
     }
@@ -131,7 +145,7 @@ impl Verb {
 #[derive(Args)]
 pub struct Source {
     /// Read inputs as this format (obj, stl, ply, off, glb, gltf, 3mf), whatever their extension; needed for `-`
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, hide_short_help = true, value_name = "FORMAT")]
     pub from: Option<String>,
 }
 
@@ -142,10 +156,10 @@ pub struct Target {
     #[arg(short, long, value_name = "OUTPUT")]
     pub output: PathBuf,
     /// Format of the output, where its extension does not tell; needed for `-`
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, hide_short_help = true, value_name = "FORMAT")]
     pub to: Option<String>,
     /// Write where every vertex and face of the result came from, as JSON
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, hide_short_help = true, value_name = "FILE.json")]
     pub origins: Option<PathBuf>,
 }
 
@@ -199,28 +213,6 @@ pub struct Features {
     pub source: Source,
 }
 
-#[derive(Args)]
-#[command(group(ArgGroup::new("ball").multiple(true)))]
-pub struct Join {
-    /// The solids, two or more, as they are posed in their files
-    #[arg(required = true, num_args = 2.., value_name = "MESH")]
-    pub inputs: Vec<PathBuf>,
-    #[command(flatten)]
-    pub target: OptionalTarget,
-    #[command(flatten)]
-    pub source: Source,
-    /// Blend the seam with a ball of this radius; with `R1,R2` its centre keeps R1 from the first part and R2 from the
-    /// other
-    #[arg(long, value_name = "R[,R2]", value_parser = radius, group = "ball")]
-    pub radius: Option<Radius>,
-    #[command(flatten)]
-    pub limit: MaxRadius,
-    #[command(flatten)]
-    pub choosing: ChoosingSeams,
-    #[command(flatten)]
-    pub rolling: Rolling,
-}
-
 /// Where a mesh goes, if one is made.
 #[derive(Args)]
 pub struct OptionalTarget {
@@ -228,10 +220,10 @@ pub struct OptionalTarget {
     #[arg(short, long, value_name = "OUTPUT", required_unless_present = "max_radius")]
     pub output: Option<PathBuf>,
     /// Format of the output, where its extension does not tell; needed for `-`
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, hide_short_help = true, value_name = "FORMAT")]
     pub to: Option<String>,
     /// Write where every vertex and face of the result came from, as JSON
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, hide_short_help = true, value_name = "FILE.json")]
     pub origins: Option<PathBuf>,
 }
 
@@ -255,58 +247,6 @@ pub struct MaxRadius {
 }
 
 #[derive(Args)]
-#[command(group(ArgGroup::new("ball").multiple(true)))]
-pub struct Blend {
-    /// The mesh to blend
-    pub input: PathBuf,
-    #[command(flatten)]
-    pub target: OptionalTarget,
-    #[command(flatten)]
-    pub source: Source,
-    /// Radius of the ball; with `R1,R2` its centre keeps R1 from the side to the left of a curve and R2 from the other,
-    /// seen from outside along the points that `features` lists. With `--profile sharp --near` on a fillet: what is rounded by
-    /// R or less is taken back to an edge [default there: as it is rounded at that place]
-    #[arg(long, value_name = "R[,R2]", value_parser = radius, group = "ball")]
-    pub radius: Option<Radius>,
-    #[command(flatten)]
-    pub limit: MaxRadius,
-    /// Least angle between the normals of two neighbouring faces that makes their edge a feature
-    #[arg(long, value_name = "DEG", default_value = "40", value_parser = angle)]
-    pub angle: f64,
-    #[command(flatten)]
-    pub choosing: Choosing,
-    #[command(flatten)]
-    pub rolling: Rolling,
-}
-
-#[derive(Args)]
-pub struct Remesh {
-    /// The mesh to smooth and remesh
-    pub input: PathBuf,
-    #[command(flatten)]
-    pub target: Target,
-    #[command(flatten)]
-    pub source: Source,
-    /// Wanted edge length; without it the triangles stay
-    #[arg(long, value_name = "L", value_parser = positive_length, required_unless_present = "smooth")]
-    pub edge_length: Option<Length>,
-    /// Move the vertices first: taubin or taubin=ROUNDS (keeps the volume), flow=LENGTH (halves waves of this length and
-    /// all but removes shorter ones, shrinking), or harmonic, biharmonic, triharmonic (the region becomes the fairest
-    /// surface that continues what is around it)
-    #[arg(long, value_name = "WAY")]
-    pub smooth: Option<Way>,
-    /// Rounds of splitting, collapsing, flipping and relaxing
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
-    pub iterations: u16,
-    /// Work on these faces only: near=X,Y,Z,RADIUS, group=NAME, origin=STAGE, or a file of face ids
-    #[arg(long, value_name = "REGION", allow_hyphen_values = true)]
-    pub region: Option<Place>,
-    /// Least angle between the normals of two neighbouring faces that makes their edge a feature; 180 keeps none
-    #[arg(long, value_name = "DEG", default_value = "40", value_parser = angle_or_none)]
-    pub angle: f64,
-}
-
-#[derive(Args)]
 pub struct Run {
     /// The recipe, a TOML file (docs/recipes.md); paths in it are relative to it
     pub recipe: PathBuf,
@@ -314,10 +254,10 @@ pub struct Run {
     #[arg(short, long, value_name = "OUTPUT")]
     pub output: Option<PathBuf>,
     /// Format of the output, where its extension does not tell; needed for `-`
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, hide_short_help = true, value_name = "FORMAT")]
     pub to: Option<String>,
     /// Write where every vertex and face of the result came from, as JSON
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, hide_short_help = true, value_name = "FILE.json")]
     pub origins: Option<PathBuf>,
 }
 
@@ -334,7 +274,7 @@ pub struct Render {
     #[arg(long, value_enum)]
     pub color: Option<Color>,
     /// Where each face comes from, as `--origins` of another verb wrote it
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, hide_short_help = true, value_name = "FILE.json")]
     pub origins: Option<PathBuf>,
     /// Draw the edges
     #[arg(long)]
@@ -383,6 +323,14 @@ pub struct Man {
     pub output: Option<PathBuf>,
 }
 
+/// The command line, with a line in every verb's short help that names the options of all verbs.
+pub fn command() -> clap::Command {
+    Cli::command().mut_subcommands(|verb| verb.after_help(COMMON_HELP))
+}
+
+const COMMON_HELP: &str = "\
+Of every verb: --report FILE, --strict, --quiet, -v, --threads N, --time-limit S; more with --help.";
+
 /// Gives `--weld` its default where a file name follows it, which clap would take for the tolerance, and repeats `--path` before each
 /// of several points, which clap would take for options where they start with a minus.
 pub fn with_bare_weld(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
@@ -395,7 +343,6 @@ pub fn with_bare_weld(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsSt
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn a_path_takes_several_points() {
@@ -404,7 +351,7 @@ mod tests {
             "fusion-cli cut --path -1,0,0 0,-1,0 --path 1,0,0 a.obj -o b.obj",
         ] {
             let Verb::Cut(cut) = parse(line).unwrap().verb else { panic!("{line}") };
-            assert_eq!((cut.path.len(), cut.input), (3, "a.obj".into()), "{line}");
+            assert_eq!((cut.cut.path.len(), cut.input), (3, "a.obj".into()), "{line}");
         }
         assert!(parse("fusion-cli cut a.obj -o b.obj").is_err());
         assert!(parse("fusion-cli cut a.obj -o b.obj --plane 0,0,0,0,0,1 --path 0,0,0").is_err());
@@ -417,6 +364,20 @@ mod tests {
     #[test]
     fn the_definition_is_sound() {
         Cli::command().debug_assert();
+    }
+
+    /// A screen has 45 lines of 100 columns.
+    #[test]
+    fn short_help_fits_on_a_screen() {
+        let mut wrong = vec![];
+        for verb in command().get_subcommands_mut() {
+            let help = verb.render_help().to_string();
+            let lines = help.lines().count();
+            if lines > 45 || help.lines().any(|line| line.chars().count() > 100) {
+                wrong.push(format!("{}: {lines} lines\n{help}", verb.get_name()));
+            }
+        }
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Why a command stopped, and the exit code that says so.
 
 use fusion::{Code, Counts, Diagnostic, Report, Severity};
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,6 +14,12 @@ pub struct Failure {
     message: String,
     /// Boxed: most results are no failures. `None` for wrong usage.
     report: Option<Box<Report>>,
+}
+
+impl Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
 }
 
 impl Failure {

@@ -1,6 +1,6 @@
 //! Why a pipeline gives no result.
 
-use crate::{Invalid, blend, choice, compose, cut, recipe, sharpen};
+use crate::{Invalid, blend, choice, compose, cut, operation, recipe, sharpen};
 use glam::DVec3;
 use mesh_core::{Cancelled, NotManifold};
 use tri_intersect::EmbedError;
@@ -8,6 +8,9 @@ use tri_intersect::EmbedError;
 /// Why there is no result.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
+    /// An option has a value that it cannot have.
+    #[error(transparent)]
+    Option(#[from] operation::OptionError),
     /// Nothing to join.
     #[error("{0} solids given; a join needs two or more")]
     TooFew(usize),
@@ -122,7 +125,8 @@ impl Error {
                 | remesh::Error::Singular { at: place }
                 | remesh::Error::IllConditioned { at: place },
             ) => Some(*place),
-            Self::Region(_)
+            Self::Option(_)
+            | Self::Region(_)
             | Self::Remesh(_)
             | Self::Blend(_)
             | Self::TooFew(_)

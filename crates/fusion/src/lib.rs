@@ -1,18 +1,61 @@
 //! Pipelines that join and blend triangle meshes.
 //!
-//! ```
-//! use fusion::{Info, features};
-//! use fusion::mesh_core::{Connected, Watch, shapes};
+//! An operation is a struct of options that runs on models: [`operation`] lists them. Two files joined, their seam filleted:
 //!
-//! let cube = shapes::cuboid(glam::DVec3::ONE);
-//! assert_eq!(Info::of(&cube, &Watch::default())?.genus, Some(0));
-//! let curves = features::feature_curves(&Connected::new(cube)?, &features::Params::default());
-//! assert_eq!(curves.len(), 12);
+//! ```no_run
+//! use fusion::mesh_core::Watch;
+//! use fusion::operation::{Boolean, Length, Precision};
+//! let parts = [fusion::mesh_io::read("bunny.obj".as_ref())?, fusion::mesh_io::read("spot.obj".as_ref())?];
+//! let union = Boolean::default().with_radius(Length::OfDiagonal(0.02));
+//! let both = union.run(&parts, Precision::F32, &Watch::default())?;
+//! fusion::mesh_io::write(&both.model, "both.glb".as_ref())?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Every edge over 40 degrees of plain arrays rounded:
+//!
+//! ```
+//! use fusion::mesh_core::{TriMesh, Watch};
+//! use fusion::operation::{Blend, Precision};
+//! let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+//! let mesh = TriMesh::from_arrays(positions.map(Into::into).into(), faces);
+//! let blend = Blend::default().with_angle(40.0).with_radius(0.05);
+//! let round = blend.run(&mesh.into(), Precision::F64, &Watch::default())?;
+//! assert_eq!(round.report.curves.len(), 6);
+//! # Ok::<(), fusion::Error>(())
+//! ```
+//!
+//! Three open meshes composed:
+//!
+//! ```
+//! use fusion::mesh_core::{Watch, shapes};
+//! use fusion::operation::{Compose, Precision};
+//! use glam::{DQuat, DVec3};
+//! let tube = |at: f64| shapes::posed(shapes::open_cylinder(0.5, 1.0, 24, 4), DQuat::IDENTITY, DVec3::Z * at).into();
+//! let parts = [tube(0.0), tube(1.5), tube(3.0)];
+//! let whole = Compose::default().run(&parts, Precision::F64, &Watch::default())?;
+//! assert_eq!(whole.report.validity.closed, Some(true));
+//! # Ok::<(), fusion::Error>(())
+//! ```
+//!
+//! One picked edge, with a radius that varies:
+//!
+//! ```
+//! use fusion::mesh_core::{Watch, shapes};
+//! use fusion::operation::{Blend, Precision, RadiusAt};
+//! use glam::DVec3;
+//! let near = vec![DVec3::new(0.0, 0.5, 0.5).into()];
+//! let radius_at = vec![RadiusAt { at: DVec3::new(0.5, 0.5, 0.5), radius: 0.2.into() }];
+//! let blend = Blend::default().with_radius(0.1).with_near(near).with_radius_at(radius_at);
+//! let round = blend.run(&shapes::cuboid(DVec3::ONE).into(), Precision::F64, &Watch::default())?;
+//! assert_eq!(round.report.figures["radius"], 0.2);
+//! # Ok::<(), fusion::Error>(())
 //! ```
 //!
 //! | file | holds |
 //! |---|---|
+//! | `operation/` | operations as data: every option, written once |
 //! | `join.rs` | union, difference and intersection, with blended seams |
 //! | `round.rs` | blends along feature curves |
 //! | `sharpen/` | fillets taken back to edges |
@@ -46,6 +89,7 @@ mod extent;
 mod info;
 pub mod join;
 mod metrics;
+pub mod operation;
 mod origins_json;
 mod outcome;
 mod palette;
@@ -71,6 +115,7 @@ pub use error::Error;
 pub use info::{Defect, Info, Loop};
 pub use join::join;
 pub use mesh_core;
+pub use mesh_io;
 pub use origins_json::{origins_to_json, parts_of_faces};
 pub use outcome::Outcome;
 pub use palette::palette_index;

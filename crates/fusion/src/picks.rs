@@ -3,16 +3,20 @@
 use crate::Error;
 use glam::DVec3;
 use mesh_core::{Adjacency, Connected, Faces, HalfedgeId, Positions, TriMesh, VertexId, dihedral_angle, shortest_path};
-use serde::Deserialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use spine::BlendCurve;
 use std::collections::{HashMap, HashSet};
 
 /// A curve as picked: points in model units, each standing for the vertex nearest to it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Picked {
     /// The points in order.
+    #[schemars(with = "Vec<[f64; 3]>")]
     pub points: Vec<DVec3>,
     /// Whether the last is joined to the first.
+    #[serde(default)]
     pub closed: bool,
 }
 

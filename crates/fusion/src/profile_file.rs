@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use profile_nurbs::{Nurbs, Profile};
-use serde::Deserialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Why a file holds no profile.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -16,15 +17,36 @@ pub enum ProfileFileError {
 }
 
 /// A curve as written. Unknown keys are refused, so that a misspelt one does not pass unseen.
-#[derive(Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct CurveFile {
+pub(crate) struct CurveFile {
     degree: u8,
     points: Vec<[f64; 2]>,
     #[serde(default)]
     weights: Option<Vec<f64>>,
     #[serde(default)]
     knots: Option<Vec<f64>>,
+}
+
+impl CurveFile {
+    /// The profile, if the numbers make one.
+    pub(crate) fn profile(self) -> Result<Profile, profile_nurbs::Error> {
+        let degree = usize::from(self.degree);
+        let points: Vec<DVec3> = self.points.iter().map(|p| DVec3::new(p[0], p[1], 0.0)).collect();
+        let weights = self.weights.unwrap_or_else(|| vec![1.0; points.len()]);
+        let knots = self.knots.unwrap_or_else(|| clamped(degree, points.len()));
+        Profile::custom(Nurbs::new(degree, &knots, &points, &weights)?)
+    }
+
+    /// A curve as it would be written.
+    pub(crate) fn of(curve: &Nurbs) -> Self {
+        Self {
+            degree: curve.degree() as u8,
+            points: curve.control_points().map(|p| [p.x, p.y]).collect(),
+            weights: Some(curve.weights().collect()),
+            knots: Some(curve.knots().to_vec()),
+        }
+    }
 }
 
 /// Reads a profile: `degree`, control `points` (pairs), and if wanted `weights` (else all 1) and `knots` (else clamped
@@ -53,11 +75,7 @@ pub fn profile_from_text(text: &str) -> Result<Profile, ProfileFileError> {
     } else {
         toml::from_str(text).map_err(|e| syntax(&e))?
     };
-    let degree = usize::from(file.degree);
-    let points: Vec<DVec3> = file.points.iter().map(|p| DVec3::new(p[0], p[1], 0.0)).collect();
-    let weights = file.weights.unwrap_or_else(|| vec![1.0; points.len()]);
-    let knots = file.knots.unwrap_or_else(|| clamped(degree, points.len()));
-    Ok(Profile::custom(Nurbs::new(degree, &knots, &points, &weights)?)?)
+    Ok(file.profile()?)
 }
 
 /// Even knots, the ends repeated so that the curve begins and ends in its first and last points.

@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 /// What is done with every file, IN, and how many seconds it may take.
-const JOBS: [(&str, u64); 15] = [
+const JOBS: [(&str, u64); 16] = [
     ("info IN", 10),
     ("convert IN -o out.ply", 10),
     ("convert IN -o out.ply --weld 0.01% --orient --split", 10),
@@ -18,6 +18,7 @@ const JOBS: [(&str, u64); 15] = [
     ("union IN block.off -o out.ply", 10),
     ("difference block.off IN -o out.ply --radius 1%", 30),
     ("cut IN -o out.ply --plane 0,0,0,1,0.2,0.1", 10),
+    ("sharpen IN -o out.ply --near 0,0,0", 10),
     ("remesh IN -o out.ply --edge-length 4%", 30),
     ("remesh IN -o out.ply --smooth taubin", 10),
     ("blend IN -o out.ply --radius 1%", 60),

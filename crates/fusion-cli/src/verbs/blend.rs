@@ -1,91 +1,101 @@
-//! `blend`: rounds feature curves.
+//! `blend`: fillets feature curves.
 
-use crate::args::Blend as Args;
+use crate::args::{MaxRadius, OptionalTarget, Source};
+use crate::drawings::Drawings;
 use crate::failure::Failure;
+use crate::options::{Read, unread, wrong};
 use crate::output::print;
 use crate::session::{Destination, Session, counts, joint_diagonal};
-use fusion::{Error, Outcome, blend, features, round, sharpen};
+use clap::Args;
+use fusion::operation::{Blend, Options, Section};
+use fusion::{Error, Outcome, Profile, blend, round, sharpen};
 use mesh_io::{Format, Model};
 use serde_json::json;
+use std::path::PathBuf;
+
+/// What can be typed.
+#[derive(Args)]
+pub struct BlendArgs {
+    /// The mesh to blend
+    input: PathBuf,
+    #[command(flatten)]
+    target: OptionalTarget,
+    #[command(flatten)]
+    source: Source,
+    #[command(flatten)]
+    limit: MaxRadius,
+    #[command(flatten)]
+    blend: Blend,
+    #[command(flatten)]
+    drawings: Drawings,
+}
 
 /// Blends the chosen curves and writes the result, or tells how large a ball may be.
-pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
-    if args.limit.max_radius {
-        if args.rolling.profile.is_some() {
-            return Err(Failure::usage("--max-radius is that of an arc; leave out --profile"));
-        }
-        return limit(session, args);
+pub fn run(session: &Session, mut args: BlendArgs) -> Result<(), Failure> {
+    if args.limit.max_radius && args.blend.profile != Section::default() {
+        return Err(Failure::usage("--max-radius is that of an arc; leave out --profile"));
     }
-    let missing = || Failure::usage("`blend` needs --radius R and -o OUTPUT, or --max-radius");
-    let target = args.target.target().ok_or_else(missing)?;
-    let sharp = args.rolling.is_sharp() && !args.choosing.near.is_empty() && args.choosing.curves.is_none();
-    if args.radius.is_none() && args.choosing.own_radius(1.0).is_none() && !sharp {
-        return Err(missing());
+    let is_sharp = args.blend.profile == Profile::Sharp.into();
+    let sharpens = is_sharp && !args.blend.near.is_empty() && args.blend.curves.is_none() && !args.limit.max_radius;
+    let Some(target) = args.target.target() else { return limit(session, args) };
+    if !sharpens {
+        args.blend.validate().map_err(|e| wrong(&e))?;
     }
     let destination = Destination::check(&target, session)?;
-    args.rolling.prepare()?;
+    let sketch = args.drawings.sketch()?;
+    args.blend.load(&mut Read::new(session)).map_err(|e| unread(&e))?;
     let model = session.read(&args.input, &args.source)?;
-    let models = std::slice::from_ref(&model);
-    let inputs = || counts(std::slice::from_ref(&args.input), models);
-    if sharp && let Some(mut outcome) = sharpened(session, args, &model, destination.format)? {
+    let inputs = || counts(std::slice::from_ref(&args.input), std::slice::from_ref(&model));
+    if sharpens && let Some(mut outcome) = sharpened(session, &args, &model, destination.format)? {
         outcome.report.inputs = inputs();
         return session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report);
     }
-    let diagonal = joint_diagonal(models);
-    let own = args.choosing.own_radius(diagonal).map(|r| [r; 2]);
-    let radius = args.radius.map(|r| r.resolve(diagonal)).or(own).ok_or_else(missing)?;
-    let params = round::Params {
-        features: features::Params { angle: args.angle, ..features::Params::default() },
-        choice: args.choosing.choice(session, diagonal)?,
-        blend: args.rolling.with_radius(radius, diagonal)?,
-        format: destination.format,
-    };
-    let outcome = round(&model, &params, session.watch()).map_err(|e| refused(args, &e));
-    let mut outcome = args.rolling.keep_drawings(&params.blend.sketch, outcome)?;
+    let diagonal = joint_diagonal(std::slice::from_ref(&model));
+    let mut params = args.blend.params(diagonal, destination.format).map_err(|e| wrong(&e))?;
+    params.blend.sketch = sketch.clone();
+    let outcome = round(&model, &params, session.watch()).map_err(|e| refused(&args.input, &e));
+    let mut outcome = args.drawings.keep(&sketch, outcome)?;
     outcome.report.inputs = inputs();
     session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
 }
 
-/// The same with the straight chord for a section.
-pub fn run_chamfer(session: &Session, mut args: Args) -> Result<(), Failure> {
-    if !args.rolling.make_chamfer() {
+/// The same with the straight chord for a section, which is the default of this verb.
+pub fn run_chamfer(session: &Session, args: BlendArgs) -> Result<(), Failure> {
+    if args.blend.profile != Profile::Chamfer.into() {
         return Err(Failure::usage("`chamfer` has its own profile; take `blend` for another"));
     }
-    run(session, &args)
+    run(session, args)
 }
 
 /// The mesh with its fillets at the picked places taken back. `None` if the first of these is on no fillet and there is a
 /// radius, which then means a blend with a sharp section along feature curves.
-fn sharpened(session: &Session, args: &Args, model: &Model, format: Format) -> Result<Option<Outcome>, Failure> {
+fn sharpened(session: &Session, args: &BlendArgs, model: &Model, format: Format) -> Result<Option<Outcome>, Failure> {
     let diagonal = joint_diagonal(std::slice::from_ref(model));
-    let near = args.choosing.places();
+    let radius = args.blend.radius.map(|r| r.sides().map(|r| r.resolve(diagonal)));
     let params = sharpen::Params {
-        near: near.clone(),
-        radius: args.radius.map(|r| r.resolve(diagonal)).map(|[one, other]| one.max(other)),
-        angle: args.angle,
+        near: args.blend.near.iter().map(|n| n.at).collect(),
+        radius: radius.map(|[one, other]| one.max(other)),
+        angle: args.blend.angle,
         format,
     };
     match fusion::sharpen(model, &params, session.watch()) {
         Ok(outcome) => Ok(Some(outcome)),
-        Err(Error::Sharpen(sharpen::Refusal::NotRounded { at })) if args.radius.is_some() && at == near[0] => Ok(None),
-        Err(e) => Err(refused(args, &e)),
+        Err(Error::Sharpen(sharpen::Refusal::NotRounded { at })) if radius.is_some() && at == params.near[0] => {
+            Ok(None)
+        }
+        Err(e) => Err(refused(&args.input, &e)),
     }
 }
 
-fn refused(args: &Args, error: &fusion::Error) -> Failure {
-    Failure::of_files(error, std::slice::from_ref(&args.input))
+fn refused(input: &PathBuf, error: &Error) -> Failure {
+    Failure::of_files(error, std::slice::from_ref(input))
 }
 
 /// Prints the largest radius that fits.
-fn limit(session: &Session, args: &Args) -> Result<(), Failure> {
+fn limit(session: &Session, mut args: BlendArgs) -> Result<(), Failure> {
+    args.blend.load(&mut Read::new(session)).map_err(|e| unread(&e))?;
     let model = session.read(&args.input, &args.source)?;
-    let params = round::Params {
-        features: features::Params { angle: args.angle, ..features::Params::default() },
-        choice: args.choosing.choice(session, joint_diagonal(std::slice::from_ref(&model)))?,
-        blend: blend::Params::new(1.0),
-        format: Format::Obj,
-    };
-    let limit = round::max_radius(&model, &params, session.watch()).map_err(|e| refused(args, &e))?;
+    let limit = args.blend.max_radius(&model, session.watch()).map_err(|e| refused(&args.input, &e))?;
     print_limit(&limit, args.limit.json)
 }
 

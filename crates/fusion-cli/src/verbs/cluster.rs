@@ -1,14 +1,37 @@
 //! `cluster`: rounds polyhedra cluster by cluster.
 
-use crate::clustering::Cluster as Args;
+use crate::args::{Source, Target};
 use crate::failure::Failure;
+use crate::options::{Read, unread, wrong};
 use crate::output::check_writable;
 use crate::session::{Destination, Session, counts, is_stream};
-use crate::text_file::read_text;
-use fusion::cluster::{CoverParams, Params, PatchParams, StripParams, cluster, clusters_from_toml};
+use clap::Args;
+use fusion::cluster::cluster;
+use fusion::operation::{Cluster, Options};
+use std::path::PathBuf;
+
+/// What can be typed.
+#[derive(Args)]
+pub struct ClusterArgs {
+    /// The polyhedron: polygons, or triangles whose coplanar neighbours are merged
+    input: PathBuf,
+    #[command(flatten)]
+    target: Target,
+    #[command(flatten)]
+    source: Source,
+    #[command(flatten)]
+    cluster: Cluster,
+    /// Write the control nets and strips here, as JSON
+    #[arg(long, value_name = "NETS.json")]
+    nets: Option<PathBuf>,
+    /// Write the exact tensor-product patches and trimmed planes here, as STEP; needs --all-sharp
+    #[arg(long, value_name = "FILE.step", requires = "all_sharp")]
+    step: Option<PathBuf>,
+}
 
 /// Blends the clusters of a polyhedron and writes the result.
-pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
+pub fn run(session: &Session, mut args: ClusterArgs) -> Result<(), Failure> {
+    args.cluster.validate().map_err(|e| wrong(&e))?;
     let destination = Destination::check(&args.target, session)?;
     let sides = [args.nets.as_ref(), args.step.as_ref()];
     for (i, file) in sides.iter().enumerate().filter_map(|(i, f)| Some((i, (*f)?))) {
@@ -17,29 +40,9 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
         }
         check_writable(file)?;
     }
-    let clusters = args.clusters.as_ref().map(|path| read_text(path, clusters_from_toml)).transpose()?;
+    args.cluster.load(&mut Read::new(session)).map_err(|e| unread(&e))?;
     let model = session.read(&args.input, &args.source)?;
-    let strip = StripParams {
-        order: args.order.unwrap_or(args.continuity),
-        balance: args.mu,
-        cut: args.cut,
-        follow: args.follow,
-    };
-    let params = Params {
-        clusters,
-        cover: if args.singles { CoverParams { distortion: 0.0, short: 0.0 } } else { CoverParams::default() },
-        patch: PatchParams {
-            continuity: args.continuity,
-            degree: args.degree,
-            extent: args.extent,
-            bulge: args.bulge,
-            sharp: args.sharp.clone(),
-            all_sharp: args.all_sharp,
-            strip,
-        },
-        tolerance: args.tolerance,
-        ..Params::new(destination.format)
-    };
+    let params = args.cluster.params(destination.format).map_err(|e| wrong(&e))?;
     let mut made = cluster(&model, &params, session.watch())
         .map_err(|e| Failure::of(&e, format!("{}: {e}", args.input.display())))?;
     let mut files: Vec<_> = args.nets.iter().map(|path| (path.clone(), made.nets_to_json().into_bytes())).collect();

@@ -1,32 +1,50 @@
 //! `cut`: takes away what lies beyond a plane or a path over the surface.
 
-use crate::cutting::{Cut as Args, Keep as Side};
+use crate::args::{Source, Target};
 use crate::failure::Failure;
+use crate::options::wrong;
 use crate::session::{Destination, Session, counts};
-use fusion::cut::{Cut, Keep, Params, PathCut, PlaneCut, cut};
+use clap::Args;
+use fusion::cut;
+use fusion::operation::{Cut, Options, point};
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// What can be typed.
+#[derive(Args)]
+pub struct CutArgs {
+    /// The mesh to cut, closed or open
+    pub input: PathBuf,
+    #[command(flatten)]
+    target: Target,
+    #[command(flatten)]
+    source: Source,
+    #[command(flatten)]
+    pub cut: Cut,
+}
 
 /// Cuts the input and writes what stays.
-pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
+pub fn run(session: &Session, args: &CutArgs) -> Result<(), Failure> {
+    args.cut.validate().map_err(|e| wrong(&e))?;
     let destination = Destination::check(&args.target, session)?;
-    let model = session.read(&args.input, &args.source)?;
-    let params = Params::new(vec![how(args)], destination.format);
-    let mut outcome =
-        cut(&model, &params, session.watch()).map_err(|e| Failure::of_files(&e, std::slice::from_ref(&args.input)))?;
-    outcome.report.inputs = counts(std::slice::from_ref(&args.input), std::slice::from_ref(&model));
+    let models = [session.read(&args.input, &args.source)?];
+    let params = args.cut.params(destination.format).map_err(|e| wrong(&e))?;
+    let inputs = std::slice::from_ref(&args.input);
+    let mut outcome = cut(&models[0], &params, session.watch()).map_err(|e| Failure::of_files(&e, inputs))?;
+    outcome.report.inputs = counts(inputs, &models);
     session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
 }
 
-fn how(args: &Args) -> Cut {
-    let smooth = usize::from(args.smooth);
-    if let Some((point, normal)) = args.plane {
-        let made = PlaneCut::new(point, normal);
-        return PlaneCut { seed: args.seed, snap: args.snap.unwrap_or(made.snap), smooth, ..made }.into();
+/// Repeats `--path` before each of several points.
+pub fn spread_path(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let is_point = |a: &OsString| a.to_str().is_some_and(|a| point(a).is_ok());
+    let mut spread: Vec<OsString> = vec![];
+    for argument in arguments {
+        let n = spread.len();
+        if n > 1 && spread[n - 2] == "--path" && is_point(&spread[n - 1]) && is_point(&argument) {
+            spread.push("--path".into());
+        }
+        spread.push(argument);
     }
-    let made = PathCut::new(args.path.clone());
-    let keep = match (args.seed, args.keep) {
-        (Some(seed), _) => Keep::Near(seed),
-        (None, Side::Larger) => Keep::Larger,
-        (None, Side::Smaller) => Keep::Smaller,
-    };
-    PathCut { keep, crease: args.crease, snap: args.snap.unwrap_or(made.snap), smooth, ..made }.into()
+    spread
 }

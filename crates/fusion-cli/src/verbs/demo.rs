@@ -6,7 +6,8 @@ use crate::output::print;
 use crate::session::Session;
 use crate::verbs::render::draw;
 use fusion::mesh_core::{FaceOrigin, shapes};
-use fusion::{Operation, blend, join, palette_index, render};
+use fusion::operation::{Boolean, Precision, SetOperation};
+use fusion::{palette_index, render};
 use glam::{DQuat, DVec3};
 use mesh_io::{Format, Model};
 use std::fs;
@@ -16,7 +17,7 @@ struct Piece {
     name: &'static str,
     what: &'static str,
     parts: Vec<Model>,
-    operation: Operation,
+    operation: SetOperation,
     radius: f64,
     view: DVec3,
 }
@@ -27,10 +28,9 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     fs::create_dir_all(folder)
         .map_err(|e| Failure::unwritable(format!("cannot make the folder {}: {e}", folder.display())))?;
     for piece in pieces() {
-        let blend = Some(blend::Params::new(piece.radius));
-        let params =
-            join::Params { operation: piece.operation, blend, seams: join::SeamChoice::default(), format: Format::Ply };
-        let mut outcome = join(&piece.parts, &params, session.watch())
+        let boolean = Boolean::default().with_operation(piece.operation).with_radius(piece.radius);
+        let mut outcome = boolean
+            .run(&piece.parts, Precision::F64, session.watch())
             .map_err(|e| Failure::of(&e, format!("{}: {e}", piece.name)))?;
         outcome.report.command = "demo".into();
         let color = outcome.origins.faces.as_slice().iter().map(|o| match *o {
@@ -64,7 +64,7 @@ fn pieces() -> Vec<Piece> {
                 at(shapes::blob(1.0, 5, 0.35, 7), 0.0, 0.0, 0.0),
                 at(shapes::blob(0.75, 5, 0.35, 12), 1.05, 0.45, 0.2),
             ],
-            operation: Operation::Union,
+            operation: SetOperation::Union,
             radius: 0.16,
             view: DVec3::new(0.3, 0.45, 1.0),
         },
@@ -75,7 +75,7 @@ fn pieces() -> Vec<Piece> {
                 lying(shapes::cylinder(0.5, 3.2, 96, 64)),
                 at(shapes::cylinder(0.36, 3.0, 96, 64), 0.013, 0.021, 0.0),
             ],
-            operation: Operation::Union,
+            operation: SetOperation::Union,
             radius: 0.15,
             view: DVec3::new(1.0, 0.7, 0.8),
         },
@@ -83,7 +83,7 @@ fn pieces() -> Vec<Piece> {
             name: "bitten",
             what: "a ball less a ball, the edge rounded",
             parts: vec![at(shapes::icosphere(1.0, 5), 0.0, 0.0, 0.0), at(shapes::icosphere(0.7, 5), 0.75, 0.45, 0.55)],
-            operation: Operation::Difference,
+            operation: SetOperation::Difference,
             radius: 0.1,
             view: DVec3::new(0.9, 0.6, 1.0),
         },

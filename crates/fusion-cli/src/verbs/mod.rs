@@ -1,6 +1,7 @@
 //! One file per verb. Each turns arguments into one library call and its result into output.
 
 pub mod blend;
+pub mod boolean;
 pub mod cluster;
 pub mod completions;
 pub mod compose;
@@ -10,8 +11,9 @@ pub mod demo;
 pub mod detail;
 pub mod features;
 pub mod info;
-pub mod join;
 pub mod man;
 pub mod remesh;
 pub mod render;
 pub mod run;
+pub mod schema;
+pub mod sharpen;

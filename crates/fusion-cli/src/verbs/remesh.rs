@@ -1,28 +1,36 @@
 //! `remesh`: even triangles and smooth surfaces, boundaries and features kept.
 
-use crate::args::Remesh as Args;
+use crate::args::{Source, Target};
 use crate::failure::Failure;
+use crate::options::{Read, unread, wrong};
 use crate::session::{Destination, Session, counts, joint_diagonal};
-use fusion::{remesh, remeshing};
+use clap::Args;
+use fusion::operation::{Options, Remesh};
+use fusion::remesh;
+use std::path::PathBuf;
+
+/// What can be typed.
+#[derive(Args)]
+pub struct RemeshArgs {
+    /// The mesh to smooth and remesh
+    input: PathBuf,
+    #[command(flatten)]
+    target: Target,
+    #[command(flatten)]
+    source: Source,
+    #[command(flatten)]
+    remesh: Remesh,
+}
 
 /// Smooths and remeshes the input, or a region of it, and writes the result.
-pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
+pub fn run(session: &Session, mut args: RemeshArgs) -> Result<(), Failure> {
+    args.remesh.validate().map_err(|e| wrong(&e))?;
     let destination = Destination::check(&args.target, session)?;
-    let model = session.read(&args.input, &args.source)?;
-    let models = std::slice::from_ref(&model);
-    let diagonal = joint_diagonal(models);
-    let region = args.region.as_ref().map(|place| place.resolve(diagonal)).transpose()?;
-    let start = match args.edge_length {
-        Some(length) => remeshing::Params::new(length.resolve(diagonal), destination.format),
-        None => remeshing::Params::keeping_triangles(destination.format),
-    };
-    let params = start
-        .with_rounds(args.iterations.into())
-        .smoothed(args.smooth.map(|way| way.resolve(diagonal)))
-        .with_features(args.angle)
-        .within(region);
-    let mut outcome = remesh(&model, &params, session.watch())
-        .map_err(|e| Failure::of_files(&e, std::slice::from_ref(&args.input)))?;
-    outcome.report.inputs = counts(std::slice::from_ref(&args.input), models);
+    args.remesh.load(&mut Read::new(session)).map_err(|e| unread(&e))?;
+    let models = [session.read(&args.input, &args.source)?];
+    let params = args.remesh.params(joint_diagonal(&models), destination.format).map_err(|e| wrong(&e))?;
+    let inputs = std::slice::from_ref(&args.input);
+    let mut outcome = remesh(&models[0], &params, session.watch()).map_err(|e| Failure::of_files(&e, inputs))?;
+    outcome.report.inputs = counts(inputs, &models);
     session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)
 }

@@ -2,6 +2,7 @@
 
 use crate::args::{Run as Args, Source, Target};
 use crate::failure::Failure;
+use crate::options::Read;
 use crate::session::{Destination, Session, counts};
 use fusion::{Error, Recipe};
 use std::path::{Path, PathBuf};
@@ -14,8 +15,7 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     let malformed = |e: &fusion::recipe::Error| Failure::unreadable(format!("{name}: {e}"));
     let mut recipe = Recipe::parse(&text).map_err(|e| malformed(&e))?;
     let folder = args.recipe.parent().unwrap_or(Path::new(""));
-    let read = |path: &Path| std::fs::read_to_string(folder.join(path)).map_err(|e| e.to_string());
-    recipe.read_curves(read).map_err(|e| malformed(&e))?;
+    recipe.load(&mut Read::beside(session, folder)).map_err(|e| malformed(&e))?;
     let output = args.output.clone().unwrap_or_else(|| folder.join(&recipe.output));
     let target = Target { output, to: args.to.clone(), origins: args.origins.clone() };
     let destination = Destination::check(&target, session)?;

@@ -3,12 +3,13 @@
 use crate::support::{Bench, Run, json};
 use fusion::Info;
 use fusion::mesh_core::{Bounds, FaceId, TriMesh, VertexId, Watch, bounds, components, shapes, validate};
+use fusion::operation::{Blend, Precision};
 use glam::DVec3;
 use mesh_io::{Format, Model};
 use std::fs;
 
 /// Every verb, IN being the broken file; the others are sound.
-const VERBS: [&str; 20] = [
+const VERBS: [&str; 21] = [
     "info IN",
     "info IN --json",
     "convert IN -o out.ply",
@@ -20,6 +21,7 @@ const VERBS: [&str; 20] = [
     "blend IN -o out.ply --radius 3%",
     "blend IN -o out.ply --profile sharp --near 1,0,1 --radius 3%",
     "blend IN --max-radius",
+    "sharpen IN -o out.ply --near 0.912,0,0.912",
     "cut IN -o out.ply --plane 0.1,0.05,0.02,1,0.2,0.1",
     "compose IN cap.ply -o out.ply",
     "compose IN cap.ply -o out.ply --method montage",
@@ -32,7 +34,7 @@ const VERBS: [&str; 20] = [
 ];
 
 /// Verbs that read no mesh.
-const INPUTLESS: [&str; 4] = ["demo", "completions", "man", "help"];
+const INPUTLESS: [&str; 5] = ["demo", "completions", "schema", "man", "help"];
 
 /// What `run` replays.
 const JOB: &str = r#"
@@ -48,8 +50,13 @@ mesh = "post.ply"
 operation = "union"
 "#;
 
-/// A drum on which every verb has something to do; without its lid for `compose`.
+/// A drum on which every verb has something to do; without its lid for `compose`, with a rounded rim for `sharpen`.
 fn drum(verb: &str) -> TriMesh {
+    if verb.starts_with("sharpen") {
+        let blend = Blend::default().with_radius(0.3).with_near(vec![DVec3::new(1.0, 0.0, 1.0).into()]);
+        let drum = shapes::cylinder(1.0, 2.0, 48, 4).into();
+        return blend.run(&drum, Precision::F64, &Watch::default()).unwrap().model.mesh;
+    }
     let mut mesh = shapes::cylinder(1.0, 2.0, 16, 4);
     if verb.starts_with("compose") {
         let below = |v: &VertexId| mesh.positions[v.index()].z < 0.99;

@@ -113,7 +113,7 @@ fn shells_and_manuals_know_every_verb() {
     bench.run("man -o pages").expect(0);
     let blend = bench.read("pages/fusion-cli-blend.1");
     assert!(blend.contains("max\\-radius") && blend.contains("threads"), "{blend}");
-    assert_eq!(fs::read_dir(bench.path("pages")).unwrap().count(), 18);
+    assert_eq!(fs::read_dir(bench.path("pages")).unwrap().count(), 20);
 }
 
 #[cfg(unix)]
@@ -150,4 +150,39 @@ fn remesh_smooths_with_or_without_new_triangles() {
     bench.run("remesh fine.off -o none.off").expect(2);
     bench.run("remesh fine.off -o none.off --smooth laplace").expect(2);
     assert!(!bench.files().contains(&"none.off".to_string()));
+}
+
+/// Every operation is in the schema, with the defaults that help prints.
+#[test]
+fn the_schema_lists_operations_with_their_defaults() {
+    let bench = Bench::new();
+    let schema = json(bench.run("schema").expect(0).text());
+    let help = bench.run("blend --help").expect(0);
+    let help = help.text().split_whitespace().collect::<Vec<_>>().join(" ");
+    for (option, default) in [("alpha", "1.75"), ("tolerance", "0.005"), ("angle", "40")] {
+        let told = &schema["$defs"]["Blend"]["properties"][option]["default"];
+        assert_eq!(told.as_f64(), default.parse().ok(), "{option}");
+        assert!(help.contains(&format!("[default: {default}]")), "{option}: {help}");
+    }
+    assert!(schema["properties"]["boolean"].is_object(), "{schema}");
+}
+
+/// A chamfer is a blend with another default.
+#[test]
+fn a_chamfer_takes_no_other_profile() {
+    let bench = Bench::new();
+    bench.run("chamfer a.off -o chamfer.off --radius 0.1").expect(0);
+    bench.run("blend a.off -o blend.off --radius 0.1 --profile chamfer").expect(0);
+    assert_eq!(bench.read("chamfer.off"), bench.read("blend.off"));
+    bench.run("chamfer a.off -o no.off --radius 0.1 --profile arc").expect(2);
+}
+
+/// What people type for a length gets an answer that helps.
+#[test]
+fn lengths_with_units_and_commas_are_explained() {
+    let bench = Bench::new();
+    for (radius, says) in [("2mm", "write 2;"), ("0,5", "write 0.5"), ("two", "such as 2%")] {
+        let run = bench.run(&format!("blend a.off -o no.off --radius {radius}")).expect(2);
+        assert!(run.stderr.contains(says), "{radius}: {}", run.stderr);
+    }
 }

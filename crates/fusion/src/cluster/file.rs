@@ -2,7 +2,8 @@
 
 use edge_cluster::{Degree, Move, Spec};
 use glam::DVec3;
-use serde::Deserialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A file of clusters that cannot be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -18,7 +19,7 @@ struct File {
 }
 
 /// One cluster, as files and recipes name it.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Entry {
     /// Its vertices.
@@ -35,8 +36,9 @@ pub struct Entry {
 }
 
 /// A degree, as files and recipes write it.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(untagged)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a degree is a whole number, or two for clusters of four sides")]
+#[schemars(title = "whole number, or two")]
 pub enum Degrees {
     /// `3`
     Same(usize),
@@ -45,7 +47,7 @@ pub enum Degrees {
 }
 
 /// A control point to be moved.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MoveEntry {
     /// Its index.
@@ -95,11 +97,16 @@ impl Entry {
 /// # Ok::<(), fusion::cluster::FileError>(())
 /// ```
 pub fn clusters_from_toml(text: &str) -> Result<Vec<Spec>, FileError> {
+    entries_from_toml(text)?.iter().map(Entry::spec).collect()
+}
+
+/// The same as written.
+pub(crate) fn entries_from_toml(text: &str) -> Result<Vec<Entry>, FileError> {
     let file: File = toml::from_str(text).map_err(|e| FileError(e.to_string().trim_end().to_string()))?;
     if file.version != 1 {
         return Err(FileError(format!("version {} is not known; this program reads version 1", file.version)));
     }
-    file.cluster.iter().map(Entry::spec).collect()
+    Ok(file.cluster)
 }
 
 #[cfg(test)]

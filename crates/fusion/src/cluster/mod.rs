@@ -11,6 +11,7 @@ mod nets;
 
 pub use edge_cluster::solids;
 pub use edge_cluster::{CoverParams, Degree, Params as PatchParams, PolyhedronParams, Spec, StripParams};
+pub(crate) use file::entries_from_toml;
 pub use file::{Degrees, Entry, FileError, MoveEntry, clusters_from_toml};
 
 use crate::outcome::{Outcome, finish};

@@ -1,19 +1,18 @@
 //! What TOML cannot check: names, ranges, order.
 
-use super::joins::split_loop;
 use super::keys::check_keys;
-use super::part_tables::{Part, PartCut, Plane};
-use super::values::{Length, Pose};
+use super::part_tables::Part;
+use super::step_table::StepTable;
+use super::values::Pose;
+use super::vocabulary::{PIECES_OF_BLEND, PIECES_OF_BOOLEAN, PIECES_OF_COMPOSE};
 use super::{Error, Recipe, Step};
-use crate::cluster;
-use crate::cut::{Cut, Keep, PathCut, PlaneCut};
-use glam::DVec3;
-use mesh_io::Format;
+use crate::cut::Cut;
+use crate::operation::{self, Detail, Files, OptionError, Options};
 use serde::Deserialize;
+use std::mem::take;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, Deserializer};
-use tri_intersect::Operation;
 
 impl Recipe {
     /// Reads a recipe.
@@ -21,12 +20,35 @@ impl Recipe {
     /// # Errors
     /// [`Error`], naming line and key: what is no TOML, unknown keys, wrong types, unknown or repeated names, numbers out of range.
     pub fn parse(text: &str) -> Result<Self, Error> {
-        let tables = DeTable::parse(text).map_err(|e| Error::of(text, &e))?;
+        let mut tables = DeTable::parse(text).map_err(|e| Error::of(text, &e))?;
         check_keys(text, tables.get_ref())?;
+        let boolean = StepTable::take(text, tables.get_mut(), "boolean", PIECES_OF_BOOLEAN)?;
+        let compose = StepTable::take(text, tables.get_mut(), "compose", PIECES_OF_COMPOSE)?;
+        let blend = StepTable::take(text, tables.get_mut(), "blend", PIECES_OF_BLEND)?;
+        let cluster = StepTable::take(text, tables.get_mut(), "cluster", PIECES_OF_BLEND)?;
+        let detail = StepTable::take(text, tables.get_mut(), "detail", &[])?;
         let mut recipe = Self::deserialize(Deserializer::from(tables)).map_err(|e| Error::of(text, &e))?;
         recipe.text = text.to_string();
+        (recipe.boolean, recipe.compose, recipe.blend) = (boolean, compose, blend);
+        (recipe.cluster, recipe.detail) = (cluster, detail);
         recipe.check()?;
         Ok(recipe)
+    }
+
+    /// Reads the files that steps name, by their paths in the recipe. Without this such steps are refused.
+    ///
+    /// # Errors
+    /// [`Error`] with the line and key that names the file, and what is wrong with it.
+    pub fn load(&mut self, files: &mut dyn Files) -> Result<(), Error> {
+        let mut blend = take(&mut self.blend);
+        let (mut boolean, mut cluster, mut detail) =
+            (take(&mut self.boolean), take(&mut self.cluster), take(&mut self.detail));
+        boolean.iter_mut().try_for_each(|step| step.load(self, files))?;
+        blend.iter_mut().try_for_each(|step| step.load(self, files))?;
+        cluster.iter_mut().try_for_each(|step| step.load(self, files))?;
+        detail.iter_mut().try_for_each(|step| step.load(self, files))?;
+        (self.boolean, self.blend, self.cluster, self.detail) = (boolean, blend, cluster, detail);
+        Ok(())
     }
 
     /// The kinds of steps, in order.
@@ -65,49 +87,44 @@ impl Recipe {
             }
             names.push(name);
             self.pose(part)?;
-            for cut in &part.cut {
-                self.cut(part, cut)?;
-            }
+            self.cuts(part)?;
         }
         self.check_places(&names)?;
-        for (i, boolean) in self.boolean.iter().enumerate() {
-            self.operation(i)?;
-            self.rolling_of_boolean(i, 1.0)?;
-            names.extend(boolean.name.iter().map(|n| n.get_ref().as_str()));
+        for boolean in &self.boolean {
+            boolean.operation.validate().map_err(|e| boolean.wrong(self, &e))?;
+            names.extend(boolean.pieces.name.iter().map(|n| n.get_ref().as_str()));
         }
-        for (i, compose) in self.compose.iter().enumerate() {
-            self.composing(i, 1.0, Format::Off)?;
-            names.extend(compose.name.iter().map(|n| n.get_ref().as_str()));
-            for name in compose.loops.iter().flatten() {
-                let part = split_loop(name.get_ref()).map_or("", |l| l.0);
-                if !names.contains(&part) {
-                    let known = names.join(", ");
-                    let message =
-                        format!("a loop is \"part:0\", or \"part\" for all of its loops, of one of the parts {known}");
-                    return Err(self.error(name.span(), message));
-                }
+        for compose in &self.compose {
+            compose.operation.validate().map_err(|e| compose.wrong(self, &e))?;
+            names.extend(compose.pieces.name.iter().map(|n| n.get_ref().as_str()));
+            if compose.operation.loops.iter().any(|name| !names.contains(&name.part.as_str())) {
+                let known = names.join(", ");
+                let says =
+                    format!("a loop is \"part:0\", or \"part\" for all of its loops, of one of the parts {known}");
+                return Err(compose.wrong(self, &OptionError::new("loops", says)));
             }
         }
-        for i in 0..self.blend.len() {
-            self.rolling_of_blend(i, 1.0)?;
+        for blend in &self.blend {
+            blend.operation.validate().map_err(|e| blend.wrong(self, &e))?;
         }
-        for i in 0..self.cluster.len() {
-            self.clustering(i, Format::Off)?;
+        for cluster in &self.cluster {
+            cluster.operation.validate().map_err(|e| cluster.wrong(self, &e))?;
         }
+        let parts: Vec<&str> = self.parts.iter().map(|p| p.name.get_ref().as_str()).collect();
         for table in &self.detail {
-            let (target, sources, _) = self.detailing(table, 1.0)?;
-            let span = table.target.as_ref().map_or(table.source.span(), Spanned::span);
-            let parts: Vec<&str> = self.parts.iter().map(|p| p.name.get_ref().as_str()).collect();
-            let named = sources.iter().map(|s| (s, table.source.span(), &parts)).chain([(&target, span, &names)]);
-            for ((part, _), span, known) in named {
-                if let Some(part) = part.as_ref().filter(|p| !known.contains(&p.as_str())) {
-                    return Err(self.error(span, format!("there is no part `{part}`, only {}", known.join(", "))));
+            let Detail { source, target, .. } = &table.operation;
+            table.operation.validate().map_err(|e| table.wrong(self, &e))?;
+            let sources = source.iter().map(|s| (s, "source", &parts));
+            for (region, option, known) in sources.chain(target.iter().map(|t| (t, "target", &names))) {
+                if let Some(part) = region.part.as_ref().filter(|p| !known.contains(&p.as_str())) {
+                    let says = format!("there is no part `{part}`, only {}", known.join(", "));
+                    return Err(table.wrong(self, &OptionError::new(option, says)));
                 }
             }
         }
-        let used = self.boolean.iter().flat_map(|b| b.parts.iter().flatten());
-        let used = used.chain(self.blend.iter().filter_map(|b| b.part.as_ref()));
-        for name in used.chain(self.cluster.iter().filter_map(|c| c.part.as_ref())) {
+        let used = self.boolean.iter().flat_map(|b| b.pieces.parts.iter().flatten());
+        let used = used.chain(self.blend.iter().filter_map(|b| b.pieces.part.as_ref()));
+        for name in used.chain(self.cluster.iter().filter_map(|c| c.pieces.part.as_ref())) {
             if !names.contains(&name.get_ref().as_str()) {
                 let known = names.join(", ");
                 return Err(self.error(name.span(), format!("there is no part `{}`, only {known}", name.get_ref())));
@@ -130,102 +147,9 @@ impl Recipe {
         })
     }
 
-    /// A cut of a part.
-    pub(super) fn cut(&self, part: &Part, cut: &PartCut) -> Result<Cut, Error> {
-        let seed = cut.seed.as_ref().map(|s| DVec3::from(*s.get_ref()));
-        let smooth = cut.smooth.as_ref().map_or(0, |s| usize::from(*s.get_ref()));
-        let snap = |default: f64| cut.snap.as_ref().map_or(Ok(default), |s| self.within(s, 0.0, 0.25));
-        match (&cut.plane, &cut.path) {
-            (Some(plane), None) => {
-                let Plane { point, normal } = *plane.get_ref();
-                let (point, normal) = (DVec3::from(point), DVec3::from(normal));
-                if !point.is_finite() || !normal.is_finite() || normal == DVec3::ZERO {
-                    let message = "a plane needs a finite point and a normal other than 0, 0, 0";
-                    return Err(self.error(plane.span(), message));
-                }
-                let made = PlaneCut::new(point, normal);
-                Ok(PlaneCut { seed, smooth, snap: snap(made.snap)?, ..made }.into())
-            }
-            (None, Some(path)) => {
-                let picks: Vec<DVec3> = path.get_ref().iter().map(|&p| p.into()).collect();
-                if picks.len() < 2 || !picks.iter().all(|p| p.is_finite()) {
-                    return Err(self.error(path.span(), "a path needs two picks or more, in finite numbers"));
-                }
-                let mut made = PathCut { smooth, ..PathCut::new(picks) };
-                made.snap = snap(made.snap)?;
-                made.keep = match (&cut.keep, seed) {
-                    (None, Some(seed)) => Keep::Near(seed),
-                    (None, None) => Keep::Larger,
-                    (Some(k), None) if k.get_ref() == "larger" => Keep::Larger,
-                    (Some(k), None) if k.get_ref() == "smaller" => Keep::Smaller,
-                    (Some(k), _) => {
-                        return Err(self.error(k.span(), "keep is larger or smaller, and goes without a seed"));
-                    }
-                };
-                if let Some(crease) = &cut.crease {
-                    made.crease = self.within(crease, 0.0, 1e3)?;
-                }
-                Ok(made.into())
-            }
-            _ => Err(self.error(part.name.span(), "a cut needs either a plane or a path")),
-        }
-    }
-
-    pub(super) fn operation(&self, i: usize) -> Result<Operation, Error> {
-        let Some(name) = &self.boolean[i].operation else { return Ok(Operation::Union) };
-        match name.get_ref().as_str() {
-            "union" => Ok(Operation::Union),
-            "difference" => Ok(Operation::Difference),
-            "intersection" => Ok(Operation::Intersection),
-            _ => Err(self.error(name.span(), "an operation is union, difference or intersection")),
-        }
-    }
-
-    /// How a polyhedron is rounded.
-    pub(super) fn clustering(&self, i: usize, format: Format) -> Result<cluster::Params, Error> {
-        let c = &self.cluster[i];
-        let count = |value: &Option<Spanned<u8>>, least: u8| match value {
-            Some(v) if !(least..=8).contains(v.get_ref()) => {
-                Err(self.error(v.span(), format!("must be a whole number from {least} to 8")))
-            }
-            Some(v) => Ok(Some(usize::from(*v.get_ref()))),
-            None => Ok(None),
-        };
-        let share = |value: &Option<Spanned<f64>>, least: f64, most: f64, default: f64| match value {
-            Some(v) => self.within(v, least, most),
-            None => Ok(default),
-        };
-        let mut params = cluster::Params::new(format);
-        let patch = &mut params.patch;
-        patch.continuity = count(&c.continuity, 1)?.unwrap_or(patch.continuity);
-        patch.degree = c.degree.as_ref().map(cluster::Degrees::degree);
-        patch.extent = share(&c.extent, 1e-3, 1.0, patch.extent)?;
-        patch.bulge = share(&c.bulge, 0.0, 0.99, patch.bulge)?;
-        patch.sharp.clone_from(&c.sharp);
-        patch.all_sharp = c.all_sharp;
-        patch.strip.balance = share(&c.mu, 1e-3, 0.999, patch.strip.balance)?;
-        patch.strip.order = count(&c.order, 0)?.unwrap_or(patch.continuity);
-        params.tolerance = share(&c.tolerance, 1e-7, 0.1, params.tolerance)?;
-        let spec = |e: &cluster::Entry| e.spec().map_err(|e| self.error(0..0, e.to_string()));
-        params.clusters = c.clusters.as_ref().map(|all| all.iter().map(spec).collect()).transpose()?;
-        Ok(params)
-    }
-
-    /// A length, if one is given; `diagonal` is what it may be a share of.
-    pub(super) fn length(&self, length: Option<&Spanned<Length>>, diagonal: f64) -> Result<Option<f64>, Error> {
-        let resolved = |l: &Spanned<Length>| {
-            let message = "a length is a number above 0, or a share of the diagonal such as \"2%\"";
-            l.get_ref().resolve(diagonal).ok_or_else(|| self.error(l.span(), message))
-        };
-        length.map(resolved).transpose()
-    }
-
-    pub(super) fn within(&self, value: &Spanned<f64>, least: f64, most: f64) -> Result<f64, Error> {
-        let number = *value.get_ref();
-        if (least..=most).contains(&number) {
-            Ok(number)
-        } else {
-            Err(self.error(value.span(), format!("must be a number from {least} to {most}")))
-        }
+    /// What a part is cut by, first to last.
+    pub(super) fn cuts(&self, part: &Part) -> Result<Vec<Cut>, Error> {
+        let wrong = |cut: &Spanned<operation::Cut>, e: OptionError| self.error(cut.span(), e.to_string());
+        part.cut.iter().map(|cut| cut.get_ref().cut().map_err(|e| wrong(cut, e))).collect()
     }
 }

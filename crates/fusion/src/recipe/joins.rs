@@ -4,112 +4,23 @@
 //! by that; so a loop is remembered by the origin of one of its vertices, which every join keeps.
 
 use super::run::Replay;
-use super::tables::{Compose, Creases, Depth, Silhouette};
-use super::{Error as Wrong, Recipe};
+use super::step_table::StepTable;
 use crate::Error;
-use crate::compose::{self, Crease, compose};
-use glam::DVec3;
+use crate::compose::{Crease, compose};
+use crate::operation::{Compose, Creases, LoopName, OptionError};
 use mesh_core::{Connected, Faces, Origins, TriMesh, VertexId, VertexOrigin, boundary_loops};
-use mesh_io::Format;
-use toml::Spanned;
-
-impl Recipe {
-    /// How openings are joined; which ones is left open.
-    pub(super) fn composing(&self, i: usize, diagonal: f64, format: Format) -> Result<compose::Params, Wrong> {
-        let c = &self.compose[i];
-        let mut params = compose::Params::new(format);
-        if let Some(text) = &c.method {
-            params.method = match text.get_ref().as_str() {
-                "implicit" => compose::Method::Implicit,
-                "montage" => compose::Method::Montage,
-                _ => return Err(self.error(text.span(), "a method is implicit or montage")),
-            };
-        }
-        if let Some(text) = &c.kernel {
-            params.kernel = match text.get_ref().as_str() {
-                "biharmonic" => compose::Kernel::Biharmonic,
-                "triharmonic" => compose::Kernel::Triharmonic,
-                "hermite" => compose::Kernel::Hermite,
-                _ => return Err(self.error(text.span(), "a kernel is triharmonic, biharmonic or hermite")),
-            };
-        }
-        if let Some(rings) = &c.rings {
-            if *rings.get_ref() > 16 {
-                return Err(self.error(rings.span(), "must be a number from 0 to 16"));
-            }
-            params.rings = Some(usize::from(*rings.get_ref()));
-        }
-        if let Some(cell) = &c.cell {
-            params.cell = self.within(cell, f64::MIN_POSITIVE, 1e6)?;
-        }
-        params.edge_length = self.length(c.edge_length.as_ref(), diagonal)?;
-        params.adjust = self.length(c.adjust.as_ref(), diagonal)?;
-        if let Some(space) = &c.space {
-            params.space = self.within(space, f64::MIN_POSITIVE, 1e6)?;
-        }
-        if let Some(creases) = &c.crease {
-            let all = match creases.get_ref() {
-                Creases::All(angle) => vec![*angle],
-                Creases::Each(each) => each.values().copied().collect(),
-            };
-            if !all.iter().all(|a| (-90.0..=90.0).contains(a)) {
-                return Err(self.error(creases.span(), "a crease is an angle from -90 to 90 degrees"));
-            }
-            if let Creases::All(angle) = creases.get_ref() {
-                params.crease = *angle;
-            }
-        }
-        params.silhouettes = c.silhouette.iter().map(|s| self.silhouette(s)).collect::<Result<_, _>>()?;
-        Ok(params)
-    }
-
-    /// A silhouette that a joint shall have.
-    fn silhouette(&self, s: &Silhouette) -> Result<compose::Silhouette, Wrong> {
-        let finite = |all: &[[f64; 3]]| all.iter().flatten().all(|x| x.is_finite());
-        let view = *s.view.get_ref();
-        if !finite(&[view]) || view == [0.0; 3] {
-            return Err(self.error(s.view.span(), "a view is a direction other than 0, 0, 0"));
-        }
-        let (strokes, span) = match (&s.stroke, &s.strokes) {
-            (Some(one), None) => (vec![one.get_ref().clone()], one.span()),
-            (None, Some(all)) => (all.get_ref().clone(), all.span()),
-            _ => return Err(self.error(s.view.span(), "a silhouette needs either a stroke or strokes")),
-        };
-        if strokes.iter().map(Vec::len).sum::<usize>() < 2 || !strokes.iter().all(|s| finite(s)) {
-            return Err(self.error(span, "a stroke needs two points or more, in finite numbers"));
-        }
-        let control = s.control.as_ref().map(|c| {
-            let fixed = finite(c.get_ref()).then(|| c.get_ref().map(DVec3::from));
-            fixed.ok_or_else(|| self.error(c.span(), "control points are two points in finite numbers"))
-        });
-        let depth = s.depth.as_ref().map_or(Ok([0.0; 2]), |d| {
-            let moves = match *d.get_ref() {
-                Depth::One(x) => [x; 2],
-                Depth::Two(both) => both,
-            };
-            let fixed = moves.iter().all(|x| x.is_finite()).then_some(moves);
-            fixed.ok_or_else(|| self.error(d.span(), "moves along the view are finite numbers"))
-        })?;
-        Ok(compose::Silhouette {
-            view: view.into(),
-            strokes: strokes.into_iter().map(|s| s.into_iter().map(DVec3::from).collect()).collect(),
-            hole: s.hole,
-            control: control.transpose()?,
-            depth,
-        })
-    }
-}
 
 impl Replay<'_> {
     pub(super) fn composes(&mut self) -> Result<(), Error> {
         self.name_rims(0);
-        for (i, table) in self.recipe.compose.iter().enumerate() {
-            let mut params = self.recipe.composing(i, self.diagonal(), self.format)?;
+        for table in &self.recipe.compose {
+            let wrong = |e| table.wrong(self.recipe, &e);
+            let mut params = table.operation.params(self.diagonal(), self.format).map_err(wrong)?;
             let mut which: Vec<usize> = (0..self.pieces.len()).collect();
-            if let Some(names) = &table.loops {
+            if !table.operation.loops.is_empty() {
                 let mut chosen = vec![];
-                for name in names {
-                    chosen.extend(self.loops_of(name)?);
+                for name in &table.operation.loops {
+                    chosen.extend(self.loops_of(table, "loops", name)?);
                 }
                 which = chosen.iter().map(|c| c.0).collect();
                 which.sort_unstable();
@@ -119,19 +30,19 @@ impl Replay<'_> {
             }
             params.creases = self.creases(table, &which)?;
             let at = self.step("compose", &which, |models, watch| compose(models, &params, watch))?;
-            self.rename(at, table.name.as_ref());
+            self.rename(at, table.pieces.name.as_ref());
             self.name_rims(at);
         }
         Ok(())
     }
 
     /// The creases that a join names one by one, its pieces being those in `which`.
-    fn creases(&self, table: &Compose, which: &[usize]) -> Result<Vec<Crease>, Error> {
-        let Some(Creases::Each(each)) = table.crease.as_ref().map(Spanned::get_ref) else { return Ok(vec![]) };
-        let span = table.crease.as_ref().map_or(0..0, Spanned::span);
+    fn creases(&self, table: &StepTable<Compose>, which: &[usize]) -> Result<Vec<Crease>, Error> {
+        let Creases::Each(each) = &table.operation.crease else { return Ok(vec![]) };
         let mut all = vec![];
         for (name, &angle) in each {
-            for (w, index) in self.loops_of(&Spanned::new(span.clone(), name.clone()))? {
+            let name = name.parse().map_err(|e: String| table.wrong(self.recipe, &OptionError::new("crease", e)))?;
+            for (w, index) in self.loops_of(table, "crease", &name)? {
                 all.extend(which.binary_search(&w).ok().map(|part| Crease { part, index, angle }));
             }
         }
@@ -148,10 +59,15 @@ impl Replay<'_> {
     }
 
     /// The loops that a recipe names, as piece and loop by their present numbers.
-    fn loops_of(&self, text: &Spanned<String>) -> Result<Vec<(usize, usize)>, Error> {
-        let wrong = |message: String| -> Error { self.recipe.error(text.span(), message).into() };
-        let (part, number) = split_loop(text.get_ref()).unwrap_or_default();
-        let Some(rims) = self.rims.iter().find(|r| r.part == part) else {
+    fn loops_of(
+        &self,
+        table: &StepTable<Compose>,
+        option: &'static str,
+        name: &LoopName,
+    ) -> Result<Vec<(usize, usize)>, Error> {
+        let wrong = |message: String| -> Error { table.wrong(self.recipe, &OptionError::new(option, message)).into() };
+        let (part, number) = (&name.part, name.index);
+        let Some(rims) = self.rims.iter().find(|r| r.part == *part) else {
             return Err(wrong(format!("there is no part `{part}` at this point")));
         };
         let marks = match number {
@@ -165,7 +81,7 @@ impl Replay<'_> {
         });
         let present: Vec<_> = present.collect();
         if present.is_empty() || number.is_some() && present.len() != marks.len() {
-            return Err(wrong(format!("`{}` is not open at this point", text.get_ref())));
+            return Err(wrong(format!("`{name}` is not open at this point")));
         }
         Ok(present)
     }

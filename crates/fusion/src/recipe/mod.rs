@@ -28,7 +28,7 @@
 //! | `vocabulary.rs`, `keys.rs` | what each table takes: the list; unknown keys refused and the reference written by it |
 //! | `values.rs` | vectors, lengths, poses, profiles |
 //! | `check.rs` | what TOML cannot check: names, ranges |
-//! | `rolling.rs` | how a ball is rolled |
+//! | `step_table.rs` | a step: pieces and operation |
 //! | `run.rs` | the steps, in order |
 //! | `pose.rs`, `placement.rs`, `snap.rs` | where parts stand: their own poses, primitives, openings that face each other |
 //! | `joins.rs`, `details.rs` | the joins of openings, and the steps of geometry detail |
@@ -42,18 +42,16 @@ mod keys;
 mod part_tables;
 mod placement;
 mod pose;
-mod rolling;
 mod run;
 mod snap;
+mod step_table;
 mod tables;
 mod values;
 mod vocabulary;
 
 pub use error::Error;
 pub use keys::reference;
-pub use part_tables::{On, Part, PartCut, Plane, Primitive, Radius, Snap};
-pub use tables::{
-    BallRadius, Blend, Boolean, Cluster, Compose, Creases, Depth, Detail, DetailRegion, DetailRegions, RadiusAt,
-    Recipe, Silhouette, Step,
-};
-pub use values::{Length, Rotation};
+pub use part_tables::{On, Part, Primitive, Radius, Snap};
+pub use step_table::{Pieces, StepTable};
+pub use tables::{Recipe, Step};
+pub use values::Rotation;

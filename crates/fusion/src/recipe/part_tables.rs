@@ -1,6 +1,7 @@
 //! What may stand in the table of a part, and in those of what parts stand on.
 
 use super::values::{DVec3Array, Rotation};
+use crate::operation::Cut;
 use serde::Deserialize;
 use std::path::PathBuf;
 use toml::Spanned;
@@ -24,7 +25,7 @@ pub struct Part {
     pub snap: Option<Snap>,
     /// Cuts, in the file's own coordinates.
     #[serde(default)]
-    pub cut: Vec<PartCut>,
+    pub cut: Vec<Spanned<Cut>>,
 }
 
 /// A place on a primitive. What rides there has its origin at the place, its z axis out of the surface, and its x axis along growing u.
@@ -86,32 +87,4 @@ pub struct Snap {
     pub to: Spanned<String>,
     /// How far apart they are left; two edges of the other loop where left out, nothing on a primitive.
     pub gap: Option<Spanned<f64>>,
-}
-
-/// A cut by a plane, or along a path.
-#[derive(Clone, Debug, Deserialize)]
-pub struct PartCut {
-    /// The plane; what its normal points to is removed.
-    pub plane: Option<Spanned<Plane>>,
-    /// Picks of a closed path over the surface.
-    pub path: Option<Spanned<Vec<DVec3Array>>>,
-    /// With a plane: cut only the contour nearest to this point. With a path: the side nearest to it stays.
-    pub seed: Option<Spanned<DVec3Array>>,
-    /// With a path: which side stays, `"larger"` (the default) or `"smaller"`.
-    pub keep: Option<Spanned<String>>,
-    /// See [`crate::cut::PathCut::crease`].
-    pub crease: Option<Spanned<f64>>,
-    /// See [`crate::cut::PlaneCut::snap`].
-    pub snap: Option<Spanned<f64>>,
-    /// Rounds of smoothing of the rim.
-    pub smooth: Option<Spanned<u16>>,
-}
-
-/// A plane.
-#[derive(Clone, Copy, Debug, Deserialize)]
-pub struct Plane {
-    /// A point of it.
-    pub point: DVec3Array,
-    /// Its normal, of any length.
-    pub normal: DVec3Array,
 }

@@ -4,10 +4,8 @@ use super::joins::Rims;
 use super::{Recipe, Step};
 use crate::cluster::cluster;
 use crate::cut::{self, cut};
-use crate::features;
 use crate::outcome::{Outcome, Promise, finish_as};
-use crate::{Choice, Counts, Error, Report, join, join::join as join_parts, round};
-use glam::DVec3;
+use crate::{Counts, Error, Report, join::join as join_parts, round};
 use mesh_core::{Bounds, Faces, Origins, Stage, TriMesh, Watch, bounds};
 use mesh_io::{Format, Model};
 use toml::Spanned;
@@ -75,7 +73,7 @@ impl Recipe {
 impl Replay<'_> {
     fn cut(&mut self) -> Result<(), Error> {
         for (i, part) in self.recipe.parts.iter().enumerate().filter(|(_, p)| !p.cut.is_empty()) {
-            let cuts = part.cut.iter().map(|c| self.recipe.cut(part, c)).collect::<Result<Vec<_>, _>>()?;
+            let cuts = self.recipe.cuts(part)?;
             let params = cut::Params::new(cuts, self.format);
             let model = Model::from(std::mem::take(&mut self.pieces[i].mesh));
             let name = format!("cut of {}", self.pieces[i].name);
@@ -101,49 +99,33 @@ impl Replay<'_> {
     }
 
     fn booleans(&mut self) -> Result<(), Error> {
-        for (i, boolean) in self.recipe.boolean.iter().enumerate() {
-            let which = match &boolean.parts {
+        for boolean in &self.recipe.boolean {
+            let which = match &boolean.pieces.parts {
                 None => (0..self.pieces.len()).collect(),
                 Some(names) => names.iter().map(|n| self.find(n)).collect::<Result<Vec<_>, _>>()?,
             };
-            let params = join::Params {
-                operation: self.recipe.operation(i)?,
-                blend: self.recipe.rolling_of_boolean(i, self.diagonal())?,
-                seams: join::SeamChoice::default(),
-                format: self.format,
-            };
+            let params = boolean.operation.params(self.diagonal(), self.format);
+            let params = params.map_err(|e| boolean.wrong(self.recipe, &e))?;
             let at = self.step("boolean", &which, |models, watch| join_parts(models, &params, watch))?;
-            self.rename(at, boolean.name.as_ref());
+            self.rename(at, boolean.pieces.name.as_ref());
         }
         Ok(())
     }
 
     fn blends(&mut self) -> Result<(), Error> {
-        for (i, blend) in self.recipe.blend.iter().enumerate() {
-            let at = self.named_or_only(blend.part.as_ref(), "name the part to blend")?;
-            let angle = match &blend.angle {
-                Some(angle) => self.recipe.within(angle, 0.1, 179.9)?,
-                None => 40.0,
-            };
-            let params = round::Params {
-                features: features::Params { angle, ..features::Params::default() },
-                choice: Choice {
-                    picked: blend.picked.clone(),
-                    near: blend.near.iter().map(|&p| DVec3::from(p).into()).collect(),
-                    ..Choice::default()
-                },
-                blend: self.recipe.rolling_of_blend(i, self.diagonal())?,
-                format: self.format,
-            };
+        for blend in &self.recipe.blend {
+            let at = self.named_or_only(blend.pieces.part.as_ref(), "name the part to blend")?;
+            let params = blend.operation.params(self.diagonal(), self.format);
+            let params = params.map_err(|e| blend.wrong(self.recipe, &e))?;
             self.step("blend", &[at], |models, watch| round::round(&models[0], &params, watch))?;
         }
         Ok(())
     }
 
     fn clusters(&mut self) -> Result<(), Error> {
-        for (i, table) in self.recipe.cluster.iter().enumerate() {
-            let at = self.named_or_only(table.part.as_ref(), "name the part to round")?;
-            let params = self.recipe.clustering(i, self.format)?;
+        for table in &self.recipe.cluster {
+            let at = self.named_or_only(table.pieces.part.as_ref(), "name the part to round")?;
+            let params = table.operation.params(self.format).map_err(|e| table.wrong(self.recipe, &e))?;
             self.step("clusters", &[at], |models, watch| Ok(cluster(&models[0], &params, watch)?.outcome))?;
         }
         Ok(())
@@ -241,6 +223,7 @@ pub(super) fn step(name: &str, source: Error) -> Error {
 mod tests {
     use super::super::Error as Wrong;
     use super::*;
+    use glam::DVec3;
     use mesh_core::{VertexOrigin, shapes, volume};
 
     const HEAD: &str = "version = 1\noutput = \"out.off\"\n";

@@ -6,27 +6,6 @@ use mesh_core::TriMesh;
 use mesh_io::Model;
 use serde::Deserialize;
 
-/// A length: model units, or a share of the diagonal of the box around all parts as posed, such as `"2%"`.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(untagged)]
-pub enum Length {
-    /// Model units.
-    Units(f64),
-    /// `"2%"`.
-    Share(String),
-}
-
-impl Length {
-    /// In model units, if it is a positive length at all.
-    pub fn resolve(&self, diagonal: f64) -> Option<f64> {
-        let length = match self {
-            Self::Units(length) => *length,
-            Self::Share(text) => text.strip_suffix('%')?.trim().parse::<f64>().ok()? / 100.0 * diagonal,
-        };
-        (length > 0.0 && length.is_finite()).then_some(length)
-    }
-}
-
 /// A turn about an axis through the origin.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 pub struct Rotation {

@@ -43,7 +43,7 @@ pub struct Params {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// No ball is limited there by anything but walls.
-    #[error("the surface nearest to {at} is not rounded; name a place on a fillet, or give its --radius")]
+    #[error("the surface nearest to {at} is not rounded; name a place on a fillet, or give its radius")]
     NotRounded {
         /// The place that was picked.
         at: DVec3,
@@ -56,7 +56,7 @@ pub enum Refusal {
     },
     /// The rounding is neither a ring nor a strip between creases.
     #[error(
-        "the rounding at {at} is no band between two surfaces: its border has {loops} loops and {ends} ends at creases; it meets others in rounded corners, or runs out, which cannot be sharpened; a smaller --radius may tell it from its neighbours"
+        "the rounding at {at} is no band between two surfaces: its border has {loops} loops and {ends} ends at creases; it meets others in rounded corners, or runs out, which cannot be sharpened; a smaller radius may tell it from its neighbours"
     )]
     NotABand {
         /// A point of its border.
