@@ -6,9 +6,11 @@ use mesh_core::{Adjacency, Connected, FaceId, FaceMap, Faces, TriMesh, Watch, ce
 use std::f64::consts::TAU;
 
 /// Evenly distributed in [0, 1), the same ones for the same seed.
-fn dice(seed: u64) -> impl FnMut() -> f64 {
-    let mut rng = fastrand::Rng::with_seed(seed);
-    move || rng.f64()
+fn dice(mut state: u64) -> impl FnMut() -> f64 {
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
 }
 
 fn normal(dice: &mut impl FnMut() -> f64) -> f64 {

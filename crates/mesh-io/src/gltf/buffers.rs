@@ -127,13 +127,17 @@ fn from_base64(text: &[u8]) -> Option<Vec<u8>> {
         b'_' => b'/',
         &b => b,
     };
-    let kept = text.iter().filter(|b| !b.is_ascii_whitespace() && **b != b'=');
-    let mut digits: Vec<u8> = kept.map(standard).collect();
-    // A digit on its own at the end holds no whole byte.
-    if digits.len() % 4 == 1 && alphabet::STANDARD.as_str().as_bytes().contains(&digits[digits.len() - 1]) {
-        digits.pop();
-    }
-    LENIENT.decode(digits).ok()
+    // Padding ends a run of digits, wherever it stands.
+    let run = |run: &[u8]| {
+        let mut digits: Vec<u8> = run.iter().filter(|b| !b.is_ascii_whitespace()).map(standard).collect();
+        // A digit on its own at the end holds no whole byte.
+        if digits.len() % 4 == 1 && alphabet::STANDARD.as_str().as_bytes().contains(&digits[digits.len() - 1]) {
+            digits.pop();
+        }
+        LENIENT.decode(digits).ok()
+    };
+    let runs: Option<Vec<Vec<u8>>> = text.split(|b| *b == b'=').map(run).collect();
+    runs.map(|r| r.concat())
 }
 
 #[cfg(test)]
