@@ -49,7 +49,7 @@ impl Against {
                 Verdict::Kept => println!("regress: {name}: kept for comparison"),
                 Verdict::Same => {}
                 Verdict::Moved(share) => {
-                    println!("regress: {name}: vertices moved by up to {share:.1e} of the diagonal")
+                    println!("regress: {name}: vertices moved by up to {share:.1e} of the diagonal");
                 }
                 Verdict::Reconnected => println!("regress: {name}: connectivity changed"),
                 Verdict::Failed(reason) => failed.push(format!("{name}: {reason}")),

@@ -28,7 +28,6 @@ operation! {
     /// # Ok::<(), fusion::Error>(())
     /// ```
     #[cfg_attr(feature = "clap", command(group(clap::ArgGroup::new("ball").multiple(true))))]
-    #[expect(clippy::struct_excessive_bools, reason = "each is an option that is there or not")]
     pub struct Blend {
         /// Radius of the ball; with `R1,R2` its centre keeps R1 from the side to the left of a curve and R2 from the other
         ///
@@ -89,15 +88,12 @@ impl Options for Blend {
     fn validate(&self) -> Check {
         let radii = self.near.iter().filter_map(|n| n.radius);
         radii.clone().try_for_each(|r| positive(r, "near"))?;
-        match self.radius {
-            Some(radius) => radius.sides().into_iter().try_for_each(|r| positive(r, "radius"))?,
-            None => {
-                let named_otherwise = !self.ids.is_empty() || self.curves.is_some() || self.seams.is_some();
-                let all = radii.count() == self.near.len() && !self.near.is_empty() && !named_otherwise;
-                ensure(all, "radius", || {
-                    "a radius is needed, for all curves or for every point that names one".into()
-                })?;
-            }
+        if let Some(radius) = self.radius {
+            radius.sides().into_iter().try_for_each(|r| positive(r, "radius"))?;
+        } else {
+            let named_otherwise = !self.ids.is_empty() || self.curves.is_some() || self.seams.is_some();
+            let all = radii.count() == self.near.len() && !self.near.is_empty() && !named_otherwise;
+            ensure(all, "radius", || "a radius is needed, for all curves or for every point that names one".into())?;
         }
         let angle = self.angle > 0.0 && self.angle < 180.0;
         ensure(angle, "angle", || "an angle is a number of degrees between 0 and 180".into())?;

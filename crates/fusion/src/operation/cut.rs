@@ -112,7 +112,7 @@ impl Options for Cut {
     const NAME: &'static str = "cut";
 
     fn validate(&self) -> Check {
-        ensure(self.plane.is_some() != !self.path.is_empty(), "plane", || {
+        ensure(self.plane.is_some() == self.path.is_empty(), "plane", || {
             "a cut needs either a plane or a path".into()
         })?;
         ensure(self.plane.is_none_or(|p| p.is_one()), "plane", || PLANE.into())?;

@@ -139,7 +139,7 @@ fn settle_on(
     let edge = step_length(mesh, curves, params);
     let mut radius = RadiusField::constant(params.radius);
     let mut spots: Vec<(DVec3, usize)> = vec![];
-    let mut tries = Tries::default();
+    let mut tries = Tries { edge, ..Tries::default() };
     let length: f64 = curves.iter().map(|c| c.length(mesh)).sum();
     if length > LONG * params.radius && !touches(sides, curves, &radius) {
         return Err(
@@ -153,7 +153,7 @@ fn settle_on(
         watch.step("blend", round as f64 / rounds as f64)?;
         let resigned_before = tries.sharp.len();
         tries.resigned = round >= PATIENT && params.overlap == Overlap::Shrink;
-        let trouble = match attempt(sides, &fine, &radius, edge, params, &mut tries, page, watch) {
+        let trouble = match attempt(sides, &fine, &radius, params, &mut tries, page, watch) {
             Ok(mut blended) => {
                 let left = length_left_sharp(mesh, curves, &blended);
                 blended.full_share = full_share(sides, &blended, params.radius) * (1.0 - left / length);
@@ -239,9 +239,11 @@ impl Drawn {
     }
 }
 
-/// What earlier tries leave to the next.
+/// What the tries of one field share.
 #[derive(Default)]
 struct Tries {
+    /// Length of the surface's edges, in model units.
+    edge: f64,
     /// Pieces drawn in the last one.
     drawn: Vec<Drawn>,
     /// Places around which the curves stay sharp.
@@ -254,7 +256,6 @@ fn attempt(
     sides: &Sides<'_>,
     fine: &Fine,
     radius: &RadiusField,
-    edge: f64,
     params: &Params,
     tries: &mut Tries,
     page: Page<'_>,
@@ -286,7 +287,7 @@ fn attempt(
                 return Ok(same.clone());
             }
             let taken = kept_chords(&cut, &removed, &piece.rim);
-            let made = draw(piece, sides, radius, edge, &taken, watch)?;
+            let made = draw(piece, sides, radius, tries.edge, &taken, watch)?;
             Ok(Drawn { from: piece.mesh.positions.clone(), radii: Drawn::radii(piece, radius), made })
         })
         .collect();

@@ -221,7 +221,7 @@ fn is_mixed(cut: &Cut, group: &[bool]) -> bool {
 /// Blends the pieces of one zone by the envelope, one convexity after the other.
 fn by_envelope(
     so_far: &mut SoFar<'_>,
-    limits: &mut Vec<Limit>,
+    limits: &mut [Limit],
     cut: &Cut,
     group: &[bool],
     first: Convexity,
