@@ -2,7 +2,6 @@
 
 use crate::plane::Flat;
 use glam::DVec3;
-use mesh_operators::{Stop, conjugate_gradients};
 
 /// Where the control points go that nobody placed: the net of springs over `links` in equilibrium, every point held to
 /// its flat. `anchors` pull with `strength` times the stiffness of all springs at a point.
@@ -26,15 +25,34 @@ pub fn settle(flats: &[Flat], links: &[[u32; 2]], anchors: &[(DVec3, f64)]) -> V
         }
         sum.iter().zip(flats).map(|(&f, flat)| flat.along(f)).collect()
     };
-    let start: Vec<DVec3> = flats.iter().zip(anchors).map(|(flat, a)| flat.nearest(a.0)).collect();
-    // Displacements from the start stay within the flats, and the forces are linear in them.
-    let apply = |x: &[DVec3]| force(x, &|_| DVec3::ZERO).into_iter().map(|f| -f).collect();
-    let right = force(&start, &|i| anchors[i].0);
-    let mut moved = vec![DVec3::ZERO; flats.len()];
-    let stop = Stop { share: 1e-15, steps: 10 * flats.len().max(10) };
-    conjugate_gradients(apply, &vec![1.0; flats.len()], &right, &mut moved, stop);
+    let dot = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum::<f64>();
+    let mut x: Vec<DVec3> = flats.iter().zip(anchors).map(|(flat, a)| flat.nearest(a.0)).collect();
+    let mut residual = force(&x, &|i| anchors[i].0);
+    let mut step = residual.clone();
+    let start = dot(&residual, &residual);
+    let mut now = start;
+    for _ in 0..10 * flats.len().max(10) {
+        // Relative to the forces at the start, so that lengths do not matter.
+        if now <= 1e-30 * start || now == 0.0 {
+            break;
+        }
+        let answer = force(&step, &|_| DVec3::ZERO);
+        let length = now / -dot(&step, &answer);
+        if !length.is_finite() {
+            break;
+        }
+        for i in 0..x.len() {
+            x[i] += length * step[i];
+            residual[i] += length * answer[i];
+        }
+        let next = dot(&residual, &residual);
+        for i in 0..x.len() {
+            step[i] = residual[i] + next / now * step[i];
+        }
+        now = next;
+    }
     // Rounding has let the points drift off their flats by a few units in the last place.
-    start.iter().zip(&moved).zip(flats).map(|((&p, &d), flat)| flat.nearest(p + d)).collect()
+    x.iter().zip(flats).map(|(&p, flat)| flat.nearest(p)).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Planes, and where several of them meet.
 
-use glam::{DMat3, DVec3};
-use mesh_operators::eigen3;
+use glam::DVec3;
 
 /// A plane `normal · x = offset`, its normal of length one and pointing out of the solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,9 +84,39 @@ impl Flat {
     }
 }
 
-/// Eigenvectors and eigenvalues, ascending, of Σ n nᵀ.
+/// Eigenvectors and eigenvalues, ascending, of Σ n nᵀ, by cyclic Jacobi rotations.
 fn eigen(normals: impl Iterator<Item = DVec3>) -> ([DVec3; 3], [f64; 3]) {
-    eigen3(normals.fold(DMat3::ZERO, |sum, n| sum + DMat3::from_cols(n.x * n, n.y * n, n.z * n)))
+    let mut m = [[0.0; 3]; 3];
+    for n in normals {
+        let n = n.to_array();
+        for i in 0..3 {
+            for j in 0..3 {
+                m[i][j] += n[i] * n[j];
+            }
+        }
+    }
+    let mut axes = DVec3::AXES;
+    for _ in 0..12 {
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            if m[p][q] == 0.0 {
+                continue;
+            }
+            let theta = 0.5 * (m[q][q] - m[p][p]) / m[p][q];
+            let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+            let c = 1.0 / (t * t + 1.0).sqrt();
+            let s = t * c;
+            for row in &mut m {
+                let (a, b) = (row[p], row[q]);
+                (row[p], row[q]) = (c * a - s * b, s * a + c * b);
+            }
+            let (a, b) = (DVec3::from(m[p]), DVec3::from(m[q]));
+            (m[p], m[q]) = ((c * a - s * b).to_array(), (s * a + c * b).to_array());
+            (axes[p], axes[q]) = (c * axes[p] - s * axes[q], s * axes[p] + c * axes[q]);
+        }
+    }
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| m[i][i].total_cmp(&m[j][j]));
+    (order.map(|i| axes[i]), order.map(|i| m[i][i]))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use edge_cluster::{
     blend, contact_slopes, cover, solids,
 };
 use glam::{DVec2, DVec3};
-use mesh_core::{Connected, Faces, Watch, closed_segments, dihedral_angle, distance_to_segments, validate};
+use mesh_core::{Connected, Faces, Watch, dihedral_angle, validate};
 
 fn specs(clusters: &[Vec<u32>]) -> Vec<Spec> {
     clusters.iter().map(|v| Spec { vertices: v.clone(), ..Spec::default() }).collect()
@@ -200,5 +200,9 @@ fn chords_stay_within_tolerance() {
 fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let n = (b - a).cross(c - a).normalize();
     let inside = [(a, b), (b, c), (c, a)].iter().all(|(s, e)| (*e - *s).cross(p - *s).dot(n) >= 0.0);
-    if inside { (p - a).dot(n).abs() } else { distance_to_segments(p, closed_segments(&[a, b, c])) }
+    let segment = |s: DVec3, e: DVec3| {
+        let t = ((p - s).dot(e - s) / (e - s).length_squared()).clamp(0.0, 1.0);
+        p.distance(s + t * (e - s))
+    };
+    if inside { (p - a).dot(n).abs() } else { segment(a, b).min(segment(b, c)).min(segment(c, a)) }
 }
