@@ -1,4 +1,4 @@
-//! Tables keyed by ids, with a fast hash: ids are nobody's attack.
+//! Tables keyed by ids, with a fast hash: ids are not chosen by an attacker.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 

@@ -15,7 +15,7 @@ use num_complex::Complex64;
 /// plain columns, which have no work to share.
 const PAR: Par = Par::Seq;
 
-// Compiled here, once for real and once for complex numbers. Left generic, the solver would be compiled anew, at length, by every crate
+// Compiled here, once for real and once for complex numbers. Left generic, the solver would be compiled again, at length, by every crate
 // that calls a function of this one for a mesh of its own.
 
 /// L·Lᵀ of a sparse symmetric positive definite matrix, prepared once for many right-hand sides.

@@ -2,7 +2,7 @@
 
 use mesh_core::{FaceId, Faces, Positions, TriMesh, VertexId};
 
-/// Some faces of a mesh and the vertices they use, numbered anew in the same order.
+/// Some faces of a mesh and the vertices they use, renumbered in the same order.
 ///
 /// ```
 /// use mesh_core::{FaceId, VertexId, shapes};

@@ -211,10 +211,10 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Where the curve can be cut at a station. An end of an open curve is no place for that.
+    /// Where the curve can be cut at a station. The ends of an open curve are never cut.
     fn seat(&mut self, c: usize, k: usize) -> Option<Seat> {
         if self.stations[c].is_end(k) {
-            // A strip may end there by itself: only what is next to it in a zone is.
+            // A strip ends there as everywhere; next to a zone the end joins the zone.
             return None;
         }
         let (edge, t) = self.stations[c].at[k];
