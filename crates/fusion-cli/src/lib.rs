@@ -7,7 +7,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `args.rs`, `length.rs` | what can be typed |
+//! | `args.rs`, `shared_args.rs`, `length.rs` | what can be typed; what several verbs share of it |
 //! | `options.rs` | options of operations: the files they name, what is wrong with them |
 //! | `drawings.rs` | what the stages of a blend draw |
 //! | `failure.rs` | exit codes |
@@ -25,6 +25,7 @@ mod options;
 mod output;
 mod progress;
 mod session;
+mod shared_args;
 mod text_file;
 mod verbs;
 

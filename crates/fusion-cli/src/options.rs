@@ -1,8 +1,8 @@
 //! Options of an operation: the files they name, and what is wrong with them.
 
-use crate::args::Source;
 use crate::failure::Failure;
 use crate::session::Session;
+use crate::shared_args::Source;
 use fusion::mesh_core::TriMesh;
 use fusion::operation::{Files, OptionError};
 use std::fs;

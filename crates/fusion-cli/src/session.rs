@@ -1,9 +1,9 @@
 //! One command from its arguments to its files.
 
-use crate::args::{Common, Source, Target};
 use crate::failure::Failure;
 use crate::output::{self, Outputs};
 use crate::progress::Progress;
+use crate::shared_args::{Common, Source, Target};
 use fusion::mesh_core::{Bounds, Origins, Watch, bounds};
 use fusion::{Counts, Report, Stage};
 use mesh_io::{Format, Model};

@@ -1,11 +1,11 @@
 //! `blend`: fillets feature curves.
 
-use crate::args::{MaxRadius, OptionalTarget, Source};
 use crate::drawings::Drawings;
 use crate::failure::Failure;
 use crate::options::{Read, unread, wrong};
 use crate::output::print;
 use crate::session::{Destination, Session, counts, joint_diagonal};
+use crate::shared_args::{MaxRadius, OptionalTarget, Source};
 use clap::Args;
 use fusion::operation::{Blend, Options, Section};
 use fusion::{Error, Outcome, Profile, blend, round, sharpen};

@@ -1,10 +1,10 @@
 //! `union`, `difference` and `intersection`, with or without a blended seam.
 
-use crate::args::{MaxRadius, OptionalTarget, Source};
 use crate::drawings::Drawings;
 use crate::failure::Failure;
 use crate::options::{Read, unread, wrong};
 use crate::session::{Destination, Session, counts, joint_diagonal};
+use crate::shared_args::{MaxRadius, OptionalTarget, Source};
 use crate::verbs::blend::print_limit;
 use clap::Args;
 use fusion::operation::{Boolean, Options, SetOperation};

@@ -1,10 +1,10 @@
 //! `cluster`: rounds polyhedra cluster by cluster.
 
-use crate::args::{Source, Target};
 use crate::failure::Failure;
 use crate::options::{Read, unread, wrong};
 use crate::output::check_writable;
 use crate::session::{Destination, Session, counts, is_stream};
+use crate::shared_args::{Source, Target};
 use clap::Args;
 use fusion::cluster::cluster;
 use fusion::operation::{Cluster, Options};

@@ -1,9 +1,9 @@
 //! `compose`: joins openings by a smooth surface.
 
-use crate::args::{Source, Target};
 use crate::failure::{Failure, with_files};
 use crate::options::{Read, unread, wrong};
 use crate::session::{Destination, Session, counts, joint_diagonal};
+use crate::shared_args::{Source, Target};
 use clap::Args;
 use fusion::compose::compose;
 use fusion::detail;

@@ -1,9 +1,9 @@
 //! `cut`: takes away what lies beyond a plane or a path over the surface.
 
-use crate::args::{Source, Target};
 use crate::failure::Failure;
 use crate::options::wrong;
 use crate::session::{Destination, Session, counts};
+use crate::shared_args::{Source, Target};
 use clap::Args;
 use fusion::cut;
 use fusion::operation::{Cut, Options, point};

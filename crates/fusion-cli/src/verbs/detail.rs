@@ -1,9 +1,9 @@
 //! `detail`: a region gets the geometry detail of others.
 
-use crate::args::{Source, Target};
 use crate::failure::Failure;
 use crate::options::{Read, unread, wrong};
 use crate::session::{Destination, Session, counts, joint_diagonal};
+use crate::shared_args::{Source, Target};
 use clap::Args;
 use fusion::detail::detail;
 use fusion::operation::{Detail, Options, point};

@@ -1,9 +1,9 @@
 //! `remesh`: even triangles and smooth surfaces, boundaries and features kept.
 
-use crate::args::{Source, Target};
 use crate::failure::Failure;
 use crate::options::{Read, unread, wrong};
 use crate::session::{Destination, Session, counts, joint_diagonal};
+use crate::shared_args::{Source, Target};
 use clap::Args;
 use fusion::operation::{Options, Remesh};
 use fusion::remesh;

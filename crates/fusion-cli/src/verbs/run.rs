@@ -1,9 +1,10 @@
 //! `run`: replays a recipe.
 
-use crate::args::{Run as Args, Source, Target};
+use crate::args::Run as Args;
 use crate::failure::Failure;
 use crate::options::Read;
 use crate::session::{Destination, Session, counts};
+use crate::shared_args::{Source, Target};
 use fusion::{Error, Recipe};
 use std::path::{Path, PathBuf};
 

@@ -1,9 +1,9 @@
 //! `sharpen`: takes fillets back to edges.
 
-use crate::args::{Source, Target};
 use crate::failure::Failure;
 use crate::options::wrong;
 use crate::session::{Destination, Session, counts, joint_diagonal};
+use crate::shared_args::{Source, Target};
 use clap::Args;
 use fusion::operation::{Options, Sharpen};
 use std::path::PathBuf;

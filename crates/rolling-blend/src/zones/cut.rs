@@ -11,7 +11,7 @@ use tri_intersect::{EmbedParams, embed};
 
 /// Where a curve is cut between a zone and a strip.
 #[derive(Clone)]
-pub(super) struct Limit {
+pub(super) struct ZoneEnd {
     pub fence: Fence,
     /// Of the zone's piece.
     pub zone: usize,
@@ -19,7 +19,7 @@ pub(super) struct Limit {
     pub cap: Option<Cap>,
 }
 
-impl Limit {
+impl ZoneEnd {
     /// Follows a change of the mesh, if all of it is left.
     pub fn move_on(&mut self, moved: &Moved) -> Option<()> {
         match &mut self.cap {
@@ -47,20 +47,20 @@ pub(super) struct Cut {
     pub spans: Vec<Span>,
     pub convexities: Vec<Convexity>,
     pub zoned: Vec<bool>,
-    pub limits: Vec<Limit>,
+    pub ends: Vec<ZoneEnd>,
 }
 
 impl Cut {
     /// Cuts the curves as planned.
     pub fn along(plan: &mut Plan<'_>, params: &Params) -> Result<Self, Trouble> {
         let cuts = plan.cuts();
-        let seats = plan.seats;
-        let (mesh, curves) = (seats.ground_mesh(), seats.curves);
+        let balls = plan.balls;
+        let (mesh, curves) = (balls.ground_mesh(), balls.curves);
         let turn = 2.0 * (1.0 - params.tolerance.clamp(1e-4, 0.5)).acos();
         let lost = |at| Trouble::at("a cross-section leaves the surface", vec![at]);
         let mut sections = vec![];
-        for (c, _, seat) in &cuts {
-            sections.push(seats.section(*c, seat, turn).ok_or_else(|| lost(seat.centre))?);
+        for (c, _, ball) in &cuts {
+            sections.push(balls.section(*c, ball, turn).ok_or_else(|| lost(ball.centre))?);
         }
         let lines: Vec<_> = sections.iter().map(|s| s.0.clone()).collect();
         let embedded = embed(mesh, &lines, &EmbedParams { snap: 0.02, reach: 1e-3 * params.radius }, &Watch::default())
@@ -82,7 +82,7 @@ impl Cut {
             spans: vec![],
             convexities: vec![],
             zoned: vec![],
-            limits: vec![],
+            ends: vec![],
         };
         for c in 0..curves.len() {
             let own: Vec<usize> = (0..cuts.len()).filter(|&i| cuts[i].0 == c).collect();
@@ -95,7 +95,7 @@ impl Cut {
                 cut.zoned.push(plan.is_zoned(span));
                 cut.pieces.push(piece);
                 cut.spans.push(span);
-                cut.convexities.push(seats.convexities[c]);
+                cut.convexities.push(balls.convexities[c]);
             }
             for i in own {
                 let ends_there = |p: &usize| {
@@ -104,7 +104,7 @@ impl Cut {
                     cut.zoned[*p] && ends.contains(&Some(fences[i].apex))
                 };
                 let zone = (first..cut.pieces.len()).find(ends_there).ok_or_else(|| lost(fences[i].centre))?;
-                cut.limits.push(Limit { fence: fences[i].clone(), zone, cap: None });
+                cut.ends.push(ZoneEnd { fence: fences[i].clone(), zone, cap: None });
             }
         }
         Ok(cut)

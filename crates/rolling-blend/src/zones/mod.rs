@@ -25,12 +25,12 @@ use crate::params::{Overlap, Params};
 use crate::so_far::SoFar;
 use crate::stitch::{ROUNDS, attempt_between};
 use crate::trouble::Trouble;
-use cut::{Cut, Limit};
+use cut::{Cut, ZoneEnd};
 use glam::DVec3;
 use mesh_core::{Adjacency, Connected, EdgeId, FaceOrigin, Faces, HalfedgeId, Stage, TriMesh, Watch};
 use mesh_query::TriBvh;
 use plan::{Plan, Span};
-use section::Seats;
+use section::CutBalls;
 use spine::{BlendCurve, Convexity};
 
 /// How often places where strips fail are added to the zones.
@@ -38,10 +38,10 @@ const TRIES: usize = 5;
 /// How near to a place of failure a curve is part of its zone, in radii: at first, and at most.
 const NEAR: f64 = 2.5;
 const WIDEST: f64 = 10.0;
-/// Work spent on envelopes, in looks at a face; zones beyond that stay sharp. Each costs one look at every face, and about so
+/// Work spent on envelopes, in visits to faces; zones beyond that stay sharp. Each costs one visit to every face, and about so
 /// many for each radius of its curves' length.
-const LOOKS: f64 = 1e6;
-const LOOKS_PER_RADIUS: f64 = 2.5e3;
+const VISITS: f64 = 1e6;
+const VISITS_PER_RADIUS: f64 = 2.5e3;
 /// What is said of these.
 const NO_TIME: &str = "too many places where the ball does not fit";
 /// Share of the full ball that is given up rather than have an edge sharp.
@@ -66,20 +66,20 @@ pub(crate) fn by_zones(
     let ground = |sign: f64| Ground { mesh, patches: &patches, tree: &tree, sign, fences: &fences };
     let (inside, outside) = (ground(-1.0), ground(1.0));
     let convexity = |c: &BlendCurve| c.convexity(mesh).unwrap_or(Convexity::Concave);
-    let seats = Seats::new(curves, curves.iter().map(convexity).collect(), [&inside, &outside], r);
-    let seats = seats.ok_or_else(|| Trouble::at("the curves have no extent", vec![]))?;
+    let balls = CutBalls::new(curves, curves.iter().map(convexity).collect(), [&inside, &outside], r);
+    let balls = balls.ok_or_else(|| Trouble::at("the curves have no extent", vec![]))?;
     let mut places: Vec<(DVec3, f64)> = vec![];
     let mut more = trouble;
     let mut best: Option<(Candidate, Plan<'_>)> = None;
-    let mut last = Plan::around(&seats, &[]);
-    let mut budget = LOOKS;
+    let mut last = Plan::around(&balls, &[]);
+    let mut budget = VISITS;
     for _ in 0..TRIES {
         let mut plan = loop {
             let Trouble::Places { places: new, .. } = &more else { break None };
             if !widen(&mut places, new, r) {
                 break None;
             }
-            let plan = Plan::around(&seats, &places);
+            let plan = Plan::around(&balls, &places);
             if !plan.is_like(&last) {
                 break Some(plan);
             }
@@ -131,7 +131,7 @@ struct Failed {
 fn candidate(plan: &mut Plan<'_>, budget: &mut f64, params: &Params, watch: &Watch) -> Result<Candidate, Trouble> {
     let cut = Cut::along(plan, params)?;
     let (made, failed) = by_pieces(&cut, budget, params, watch)?;
-    Ok(Candidate { blended: on_whole(plan.seats.ground_mesh(), plan.seats.curves, &cut, made), failed })
+    Ok(Candidate { blended: on_whole(plan.balls.ground_mesh(), plan.balls.curves, &cut, made), failed })
 }
 
 /// Adds places to those around which there are zones; those that have one already get a wider one. Returns whether anything
@@ -154,12 +154,12 @@ type Pieces<'a> = (SoFar<'a>, Vec<Failed>);
 fn by_pieces<'a>(cut: &'a Cut, budget: &mut f64, params: &Params, watch: &Watch) -> Result<Pieces<'a>, Trouble> {
     let mut failed = vec![];
     let mut so_far = SoFar::new(&cut.mesh, &cut.pieces, params.radius);
-    let mut limits = cut.limits.clone();
+    let mut ends = cut.ends.clone();
     let chosen = envelope::halfedges_of(&cut.mesh, &cut.pieces);
     for (group, first) in groups(&cut.mesh, &cut.pieces, &cut.zoned, params.radius) {
         let own: Vec<&BlendCurve> = cut.pieces.iter().zip(&group).filter(|c| *c.1).map(|c| c.0).collect();
         let length: f64 = own.iter().map(|c| c.length(&cut.mesh)).sum();
-        let cost = cut.mesh.face_count() as f64 + LOOKS_PER_RADIUS * length / params.radius;
+        let cost = cut.mesh.face_count() as f64 + VISITS_PER_RADIUS * length / params.radius;
         let mut made = match envelope::sharp_end(&cut.mesh, &own, &chosen) {
             Some(at) => Err(Trouble::at("the curve ends at edges that stay sharp", vec![at])),
             None => Ok(()),
@@ -171,13 +171,13 @@ fn by_pieces<'a>(cut: &'a Cut, budget: &mut f64, params: &Params, watch: &Watch)
                     made = Err(Trouble::at(NO_TIME, vec![]));
                     break;
                 }
-                let (mut tried, mut moved) = (so_far.clone(), limits.clone());
+                let (mut tried, mut moved) = (so_far.clone(), ends.clone());
                 made = by_envelope(&mut tried, &mut moved, cut, &group, first, params, watch);
                 if let Err(Trouble::Cancelled(c)) = made {
                     return Err(c.into());
                 }
                 if made.is_ok() {
-                    (so_far, limits) = (tried, moved);
+                    (so_far, ends) = (tried, moved);
                     break;
                 }
                 if !is_mixed(cut, &group) {
@@ -200,7 +200,7 @@ fn by_pieces<'a>(cut: &'a Cut, budget: &mut f64, params: &Params, watch: &Watch)
         so_far.connect().map_err(lost)?;
         let chosen = so_far.curves(|i| !cut.zoned[i]).map_err(lost)?;
         let present = so_far.mesh.as_ref().unwrap_or(&cut.mesh);
-        let at = limits.into_iter().map(Limit::into_cap).collect();
+        let at = ends.into_iter().map(ZoneEnd::into_cap).collect();
         let caps = Caps { at, border: border(present, &so_far, cut) };
         let made = attempt_between(present, &chosen, &caps, params, ROUNDS, watch)?;
         so_far.add(made, |i| !cut.zoned[i]);
@@ -221,7 +221,7 @@ fn is_mixed(cut: &Cut, group: &[bool]) -> bool {
 /// Blends the pieces of one zone by the envelope, one convexity after the other.
 fn by_envelope(
     so_far: &mut SoFar<'_>,
-    limits: &mut [Limit],
+    ends: &mut [ZoneEnd],
     cut: &Cut,
     group: &[bool],
     first: Convexity,
@@ -240,18 +240,17 @@ fn by_envelope(
             so_far.consumed(own, Method::Envelope);
             continue;
         }
-        let here: Vec<usize> = (0..limits.len()).filter(|&l| own(limits[l].zone)).collect();
-        let fences: Vec<_> = here.iter().map(|&l| limits[l].fence.clone()).collect();
+        let here: Vec<usize> = (0..ends.len()).filter(|&l| own(ends[l].zone)).collect();
+        let fences: Vec<_> = here.iter().map(|&l| ends[l].fence.clone()).collect();
         let present = so_far.mesh.as_ref().unwrap_or(so_far.input);
         let (mut made, caps) = envelope::blend(present, &chosen, convexity, &fences, params, watch)?;
         let moved = Moved::by(&made.origins);
-        for limit in limits.iter_mut() {
-            limit
-                .move_on(&moved)
-                .ok_or_else(|| Trouble::at("a blend covers a neighbouring curve", vec![limit.fence.centre]))?;
+        for end in ends.iter_mut() {
+            end.move_on(&moved)
+                .ok_or_else(|| Trouble::at("a blend covers a neighbouring curve", vec![end.fence.centre]))?;
         }
         for (l, cap) in here.into_iter().zip(caps) {
-            limits[l].cap = Some(cap);
+            ends[l].cap = Some(cap);
         }
         let by_ball =
             |i: usize| CurveBlend::made(Method::Envelope, params.radius, so_far.blended.curves[i].length, 1.0);

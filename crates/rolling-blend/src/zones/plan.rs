@@ -1,7 +1,7 @@
 //! Which stretches of the curves lie in zones: those around the places where a sweep fails, as far as the ball has more
 //! than its two sides to touch.
 
-use super::section::{Seat, Seats};
+use super::section::{CutBall, CutBalls};
 use glam::DVec3;
 use mesh_core::{Connected, Faces, Positions, TriMesh, VertexId};
 use spine::BlendCurve;
@@ -37,11 +37,11 @@ pub(super) struct Span {
 pub(super) struct Plan<'a> {
     mesh: &'a Connected<TriMesh>,
     curves: &'a [BlendCurve],
-    pub seats: &'a Seats<'a>,
+    pub balls: &'a CutBalls<'a>,
     stations: Vec<Stations>,
     ends: BTreeMap<VertexId, Vec<(usize, usize)>>,
     /// What was found at stations: `None` where the ball touches more than two sides.
-    known: BTreeMap<(usize, usize), Option<Seat>>,
+    known: BTreeMap<(usize, usize), Option<CutBall>>,
 }
 
 impl Stations {
@@ -96,9 +96,9 @@ impl Stations {
 
 impl<'a> Plan<'a> {
     /// Plans zones around places, each with the distance up to which curves are part of its zone, in radii.
-    pub fn around(seats: &'a Seats<'a>, places: &[(DVec3, f64)]) -> Self {
-        let (mesh, curves) = (seats.ground_mesh(), seats.curves);
-        let stations: Vec<Stations> = curves.iter().map(|c| Stations::of(mesh, c, seats.r)).collect();
+    pub fn around(balls: &'a CutBalls<'a>, places: &[(DVec3, f64)]) -> Self {
+        let (mesh, curves) = (balls.ground_mesh(), balls.curves);
+        let stations: Vec<Stations> = curves.iter().map(|c| Stations::of(mesh, c, balls.r)).collect();
         let mut ends: BTreeMap<VertexId, Vec<(usize, usize)>> = BTreeMap::new();
         for (c, curve) in curves.iter().enumerate().filter(|(_, c)| !c.closed) {
             if let (Some(&first), Some(&last)) = (curve.halfedges.first(), curve.halfedges.last()) {
@@ -106,10 +106,10 @@ impl<'a> Plan<'a> {
                 ends.entry(mesh.head(last)).or_default().push((c, stations[c].at.len() - 1));
             }
         }
-        let mut plan = Self { mesh, curves, seats, stations, ends, known: BTreeMap::new() };
+        let mut plan = Self { mesh, curves, balls, stations, ends, known: BTreeMap::new() };
         let mut waiting = vec![];
         for &(p, reach) in places {
-            plan.seed(p, reach * seats.r, &mut waiting);
+            plan.seed(p, reach * balls.r, &mut waiting);
         }
         plan.grow(waiting);
         plan
@@ -151,11 +151,11 @@ impl<'a> Plan<'a> {
                     waiting.extend(vertex.into_iter().flat_map(|(_, e)| e.iter().copied()));
                 }
                 // A ball there may touch what the blends of other curves change.
-                let others = self.seats.beside(c, self.place(c, k));
+                let others = self.balls.beside(c, self.place(c, k));
                 waiting.extend(others.into_iter().map(|(d, edge, t)| (d, self.stations[d].nearest(edge, t))));
                 let beside: Vec<usize> = self.stations[c].beside(k).collect();
                 for j in beside {
-                    if !self.stations[c].zoned[j] && self.seat(c, j).is_none() {
+                    if !self.stations[c].zoned[j] && self.ball(c, j).is_none() {
                         waiting.push((c, j));
                     }
                 }
@@ -212,24 +212,24 @@ impl<'a> Plan<'a> {
     }
 
     /// Where the curve can be cut at a station. The ends of an open curve are never cut.
-    fn seat(&mut self, c: usize, k: usize) -> Option<Seat> {
+    fn ball(&mut self, c: usize, k: usize) -> Option<CutBall> {
         if self.stations[c].is_end(k) {
             // A strip ends there as everywhere; next to a zone the end joins the zone.
             return None;
         }
         let (edge, t) = self.stations[c].at[k];
-        let seats = self.seats;
-        self.known.entry((c, k)).or_insert_with(|| seats.at(c, edge, t)).clone()
+        let balls = self.balls;
+        self.known.entry((c, k)).or_insert_with(|| balls.at(c, edge, t)).clone()
     }
 
-    /// The cuts: curve, station and seat of the stations next to zones, in order.
-    pub fn cuts(&mut self) -> Vec<(usize, usize, Seat)> {
+    /// The cuts: curve, station and ball of the stations next to zones, in order.
+    pub fn cuts(&mut self) -> Vec<(usize, usize, CutBall)> {
         let mut found = vec![];
         for c in 0..self.stations.len() {
             for k in 0..self.stations[c].at.len() {
                 let beside_zone = self.stations[c].beside(k).any(|j| self.stations[c].zoned[j]);
                 if !self.stations[c].zoned[k] && beside_zone {
-                    found.extend(self.seat(c, k).map(|s| (c, k, s)));
+                    found.extend(self.ball(c, k).map(|s| (c, k, s)));
                 }
             }
         }

@@ -23,7 +23,7 @@ const BEYOND: f64 = 0.35;
 
 /// A ball across a curve.
 #[derive(Clone, Debug)]
-pub(super) struct Seat {
+pub(super) struct CutBall {
     pub centre: DVec3,
     pub halfedge: HalfedgeId,
     t: f64,
@@ -31,8 +31,8 @@ pub(super) struct Seat {
     feet: [DVec3; 2],
 }
 
-/// What is asked for seats.
-pub(crate) struct Seats<'a> {
+/// What is asked for balls.
+pub(crate) struct CutBalls<'a> {
     pub curves: &'a [BlendCurve],
     /// The surface as balls meet it from inside and from outside.
     pub grounds: [&'a Ground<'a>; 2],
@@ -47,7 +47,7 @@ pub(crate) struct Seats<'a> {
     first_edge: Vec<usize>,
 }
 
-impl<'a> Seats<'a> {
+impl<'a> CutBalls<'a> {
     pub fn new(
         curves: &'a [BlendCurve],
         convexities: Vec<Convexity>,
@@ -83,7 +83,7 @@ impl<'a> Seats<'a> {
 
     /// The ball across a curve at a share of one of its edges, if it touches the curve's two sides and no other curve is
     /// near.
-    pub fn at(&self, c: usize, edge: usize, t: f64) -> Option<Seat> {
+    pub fn at(&self, c: usize, edge: usize, t: f64) -> Option<CutBall> {
         let (ground, r) = (self.ground(c), self.r);
         let mesh = ground.mesh;
         let halfedge = self.curves[c].halfedges[edge];
@@ -112,7 +112,7 @@ impl<'a> Seats<'a> {
         };
         let mut around = vec![];
         ground.tree.faces_in_box(mesh, &Bounds::of([centre]).inflated(CLEAR * r), &mut around);
-        (!around.into_iter().any(near)).then_some(Seat { centre, halfedge, t, feet })
+        (!around.into_iter().any(near)).then_some(CutBall { centre, halfedge, t, feet })
     }
 
     /// The points nearest to `x` on the edges of other curves within reach: curve, edge, and share of it.
@@ -144,23 +144,23 @@ impl<'a> Seats<'a> {
         self.tree.closest_point_where(&self.segments, x, APART * self.r, other).is_none()
     }
 
-    /// The cross-section through a seat as a curve on the mesh, and the places in it of the apex and of both feet.
+    /// The cross-section through a ball as a curve on the mesh, and the places in it of the apex and of both feet.
     /// `turn` is the largest angle between its points as the centre sees them.
-    pub fn section(&self, c: usize, seat: &Seat, turn: f64) -> Option<(SurfaceCurve, [usize; 3])> {
+    pub fn section(&self, c: usize, ball: &CutBall, turn: f64) -> Option<(SurfaceCurve, [usize; 3])> {
         let ground = self.ground(c);
         let mesh = ground.mesh;
-        let [a, b] = mesh.ends(seat.halfedge);
-        let x = a.lerp(b, seat.t);
-        let apex = SurfacePoint::Edge { halfedge: seat.halfedge, t: seat.t };
-        let twin = mesh.twin(seat.halfedge)?;
-        let sides = [seat.halfedge, twin].map(|h| ground.patches.of(h.face()));
+        let [a, b] = mesh.ends(ball.halfedge);
+        let x = a.lerp(b, ball.t);
+        let apex = SurfacePoint::Edge { halfedge: ball.halfedge, t: ball.t };
+        let twin = mesh.twin(ball.halfedge)?;
+        let sides = [ball.halfedge, twin].map(|h| ground.patches.of(h.face()));
         let on = |side: usize, p: DVec3| {
             let found = ground.tree.closest_point_where(mesh, p, self.r, |f| ground.patches.of(f) == sides[side])?;
             Some((found.surface_point(mesh), ground.patches.face_normal(found.face)))
         };
         // From the foot to the apex, both left out; the ball's points between are met by rays from the centre.
         let half = |side: usize| {
-            let (from, to) = (seat.feet[side] - seat.centre, x - seat.centre);
+            let (from, to) = (ball.feet[side] - ball.centre, x - ball.centre);
             let pieces = (from.angle_between(to) / turn).ceil().max(1.0) as usize;
             (1..pieces).map(move |k| (from, to, k as f64 / pieces as f64)).collect::<Vec<_>>()
         };
@@ -172,20 +172,20 @@ impl<'a> Seats<'a> {
             let chord = to - from;
             let across = direction.cross(chord);
             let reach = from.cross(chord).dot(across) / across.length_squared();
-            on(side, seat.centre + reach * direction)
+            on(side, ball.centre + reach * direction)
         };
-        let far = |side: usize| on(side, seat.feet[side] + BEYOND * self.r * (seat.feet[side] - x).normalize_or_zero());
-        let mut samples = vec![far(0)?, on(0, seat.feet[0])?];
+        let far = |side: usize| on(side, ball.feet[side] + BEYOND * self.r * (ball.feet[side] - x).normalize_or_zero());
+        let mut samples = vec![far(0)?, on(0, ball.feet[0])?];
         for step in half(0) {
             samples.push(ray(0, step)?);
         }
         let place = samples.len();
-        let normal = (samples[1].1 + on(1, seat.feet[1])?.1).normalize_or_zero();
+        let normal = (samples[1].1 + on(1, ball.feet[1])?.1).normalize_or_zero();
         samples.push((apex, normal));
         for step in half(1).into_iter().rev() {
             samples.push(ray(1, step)?);
         }
-        samples.extend([on(1, seat.feet[1])?, far(1)?]);
+        samples.extend([on(1, ball.feet[1])?, far(1)?]);
         let (curve, at) = SurfaceCurve::through(mesh, &samples, false, &TraceLimits::default()).ok()?;
         Some((curve, [at[place], at[1], at[at.len() - 2]]))
     }
