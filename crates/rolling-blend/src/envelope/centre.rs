@@ -5,7 +5,7 @@
 //! spine, no strips, no corners, and any number of contacts. C is found by cutting planes: a centre nearest to x in front
 //! of the tangent planes met so far, the closest contact that it violates added as one more plane, until none is.
 
-use super::patches::Patches;
+use super::patches::{Patches, to_segment};
 use glam::{DMat3, DVec3};
 use mesh_core::{Bounds, Connected, FaceId, HalfedgeId, Positions, TriMesh};
 use mesh_query::TriBvh;
@@ -33,10 +33,32 @@ pub(crate) struct Ground<'a> {
     pub fences: &'a [bool],
 }
 
-/// The half space in front of a contact with a face: n·(c − foot) ≥ r.
+/// A face in whose plane the envelope ends: no centre lies in front of that.
+pub(crate) struct Stop {
+    /// Out of the face.
+    pub normal: DVec3,
+    /// The stretch of its boundary at which the envelope ends.
+    pub along: Vec<DVec3>,
+}
+
+impl Stop {
+    /// Whether the stop is in the way of balls at a point: it is behind the plane and no farther than a radius from the
+    /// stretch.
+    fn acts(&self, x: DVec3, r: f64) -> bool {
+        let near = || self.along.windows(2).any(|w| to_segment(x, [w[0], w[1]]) <= r);
+        self.along.first().is_some_and(|&at| self.normal.dot(x - at) <= SETTLED * r) && near()
+    }
+
+    fn plane(&self, r: f64) -> Option<Plane> {
+        let at = self.along.first()?;
+        Some(Plane { face: None, foot: *at + r * self.normal, normal: -self.normal })
+    }
+}
+
+/// The half space in front of a contact with a face, or behind a stop: n·(c − foot) ≥ r.
 #[derive(Clone, Copy)]
 struct Plane {
-    face: FaceId,
+    face: Option<FaceId>,
     foot: DVec3,
     normal: DVec3,
 }
@@ -50,8 +72,27 @@ impl Ground<'_> {
     /// The admissible centre nearest to `x`, sought from the plane of `face`, which should be near. `None` where there is
     /// none near by, or none is found.
     pub fn centre(&self, x: DVec3, r: f64, face: FaceId) -> Option<DVec3> {
+        self.centre_behind(x, r, face, vec![], |_| true)
+    }
+
+    /// The centre nearest to `x` in the plane through it, with no contact to the facet of `end` that lies in this plane.
+    pub fn centre_in_plane(&self, x: DVec3, r: f64, face: FaceId, end: FaceId) -> Option<DVec3> {
+        let normal = self.sign * self.patches.face_normal(end);
+        let stops = [normal, -normal].map(|n| Plane { face: None, foot: x - r * n, normal: n });
+        self.centre_behind(x, r, face, stops.into(), |f| self.patches.facet(f) != self.patches.facet(end))
+    }
+
+    /// The nearest centre beyond some planes, of those that keep away from the faces that count.
+    fn centre_behind(
+        &self,
+        x: DVec3,
+        r: f64,
+        face: FaceId,
+        mut planes: Vec<Plane>,
+        counts: impl Fn(FaceId) -> bool,
+    ) -> Option<DVec3> {
         let [a, ..] = self.mesh.triangle(face);
-        let mut planes = vec![Plane { face, foot: a, normal: self.sign * self.patches.face_normal(face) }];
+        planes.push(Plane { face: Some(face), foot: a, normal: self.sign * self.patches.face_normal(face) });
         for _ in 0..STEPS {
             let (place, holding) = nearest_in_front(x, r, &planes)?;
             if place.distance_squared(x) > FARTHEST * FARTHEST * r * r {
@@ -60,17 +101,18 @@ impl Ground<'_> {
             // Faces end: a plane that holds the centre turns about its contact until it is tangent to the ball.
             let mut changed = false;
             for (plane, holds) in planes.iter_mut().zip(&holding) {
-                let turned = self.plane(plane.face, place);
+                let Some(face) = plane.face else { continue };
+                let turned = self.plane(face, place);
                 changed |= *holds && (place - turned.foot).dot(turned.normal) > (1.0 + SEATED) * r;
                 *plane = turned;
             }
-            let near = self.tree.closest_point_within(self.mesh, place, (1.0 - SEATED) * r);
+            let near = self.tree.closest_point_where(self.mesh, place, (1.0 - SEATED) * r, &counts);
             if let Some(near) = near
-                && planes.iter().all(|p| p.face != near.face)
+                && planes.iter().all(|p| p.face != Some(near.face))
             {
                 if planes.len() >= PLANES {
                     let mut held = holding.iter();
-                    planes.retain(|_| held.next() == Some(&true));
+                    planes.retain(|p| held.next() == Some(&true) || p.face.is_none());
                 }
                 planes.push(self.plane(near.face, place));
                 changed = true;
@@ -88,21 +130,29 @@ impl Ground<'_> {
         let out = self.sign * self.patches.face_normal(face);
         let away = place - foot;
         let normal = if away.dot(out) > 0.0 { away.normalize_or(out) } else { out };
-        Plane { face, foot, normal }
+        Plane { face: Some(face), foot, normal }
     }
 
     /// The point of the envelope over `x`, and the ball's centre: `x` itself where the ball can touch it. `None` where no ball
-    /// can be near.
-    pub fn envelope(&self, x: DVec3, r: f64) -> Option<(DVec3, DVec3)> {
+    /// can be near. No centre lies beyond the `stops` near `x`.
+    pub fn envelope(&self, x: DVec3, r: f64, stops: &[Stop]) -> Option<(DVec3, DVec3)> {
         let nearest = self.tree.closest_point(self.mesh, x)?.face;
-        let centre = self.centre(x, r, nearest).or_else(|| self.centre_from_any(x, r, nearest))?;
+        let stops: Vec<Plane> = stops.iter().filter(|s| s.acts(x, r)).filter_map(|s| s.plane(r)).collect();
+        let from = |face| self.centre_behind(x, r, face, stops.clone(), |_| true);
+        let centre = from(nearest).or_else(|| self.centre_from_any(x, r, nearest, from))?;
         let arm = x - centre;
         let length = arm.length();
         (length > 1e-3 * r).then(|| (centre + arm * (r / length), centre))
     }
 
     /// The nearest of the centres found from each patch within reach.
-    fn centre_from_any(&self, x: DVec3, r: f64, tried: FaceId) -> Option<DVec3> {
+    fn centre_from_any(
+        &self,
+        x: DVec3,
+        r: f64,
+        tried: FaceId,
+        from: impl Fn(FaceId) -> Option<DVec3>,
+    ) -> Option<DVec3> {
         let mut around = vec![];
         self.tree.faces_in_box(self.mesh, &Bounds::of([x]).inflated(1.5 * r), &mut around);
         let distance = |f: FaceId| mesh_query::closest_point_on_triangle(x, self.mesh.triangle(f)).0.distance(x);
@@ -114,7 +164,7 @@ impl Ground<'_> {
                 *best = here;
             }
         }
-        let found = starts.values().filter_map(|&(_, f)| self.centre(x, r, f));
+        let found = starts.values().filter_map(|&(_, f)| from(f));
         found.min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)))
     }
 }

@@ -1,6 +1,6 @@
 //! The cut-out piece of the surface, drawn onto the envelope.
 
-use super::centre::Ground;
+use super::centre::{Ground, Stop};
 use super::flip::flip_needles;
 use crate::field::piece::{CutOut, Evenness, even_out, split_chords};
 use crate::trouble::Trouble;
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 
 /// Rounds of each remeshing of the piece, and how far its vertices may then be drawn, in radii: the cut-out piece has needles,
 /// and an edge of 35 degrees is 2.3 radii away from its ball.
-const PASSES: [(usize, f64); 3] = [(10, 3.0), (5, 1.0), (5, 0.5)];
+const PASSES: [(usize, f64); 3] = [(10, 3.0), (5, 3.0), (5, 1.0)];
 /// The drawn piece is smaller than what was cut out; where it is larger than this many times, vertices went astray.
 const WIDEST: f64 = 1.2;
 /// So many vertices, or such a share, may be without a ball: the search for one is local. They follow their neighbours.
@@ -20,12 +20,13 @@ const SHARE: usize = 50;
 /// What is said where there is none.
 pub(crate) const NO_BALL: &str = "no ball of this size fits";
 
-/// Draws the piece onto the envelope of balls of radius `r`, with edges about `edge` long. Its topology stays.
+/// Draws the piece onto the envelope of balls of radius `r` behind the `stops`, with edges about `edge` long. Its topology
+/// stays.
 pub(super) fn draw(
     piece: &CutOut,
     ground: &Ground<'_>,
-    r: f64,
-    edge: f64,
+    (r, edge): (f64, f64),
+    stops: &[Stop],
     taken: &BTreeSet<[VertexId; 2]>,
     watch: &Watch,
 ) -> Result<TriMesh, Trouble> {
@@ -39,7 +40,7 @@ pub(super) fn draw(
         let found: Vec<Option<(DVec3, DVec3)>> = inner
             .par_iter()
             .with_min_len(16)
-            .map(|&p| ground.envelope(p, r).filter(|q| q.0.distance(p) < reach * r))
+            .map(|&p| ground.envelope(p, r, stops).filter(|q| q.0.distance(p) < reach * r))
             .collect();
         let lost: Vec<DVec3> = inner.iter().zip(&found).filter(|f| f.1.is_none()).map(|f| *f.0).collect();
         if lost.len() > FEW.max(inner.len() / SHARE) {

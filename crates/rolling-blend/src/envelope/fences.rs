@@ -1,18 +1,19 @@
-//! Where the envelope ends in a cross-section of the curve: the rim of the piece there, on the ball instead of the sharp edge,
-//! and the cap between the two.
+//! Where the envelope ends in a plane: the rim of the piece there, on the ball instead of the sharp edge, and the cap between
+//! the two. In a cross-section of the curve, these are fences.
 
-use crate::cap::{Cap, Fence};
+use crate::cap::Fence;
 use crate::field::piece::CutOut;
 use crate::strip::Piece;
 use crate::trouble::Trouble;
 use glam::DVec3;
-use mesh_core::{Adjacency, Connected, FaceMap, HalfedgeId, Positions, TriMesh, VertexId, VertexOrigin};
+use mesh_core::{Adjacency, Connected, FaceMap, HalfedgeId, TriMesh, VertexId, VertexOrigin};
 use tri_intersect::Embedded;
 
-/// The stretch of an outline that runs along a fence, in the outline's direction; contact points at both ends.
+/// The stretch of an outline along which the piece ends in a plane, in the outline's direction; contact points at both ends.
 pub(super) struct Row {
-    centre: DVec3,
-    chain: Vec<VertexId>,
+    pub chain: Vec<VertexId>,
+    /// On the ball, for each vertex of the chain but the two contact points.
+    pub on_ball: Vec<DVec3>,
 }
 
 /// Both halfedges of every edge of the fences.
@@ -26,7 +27,7 @@ pub(super) fn fenced(mesh: &Connected<TriMesh>, fences: &[Fence]) -> Vec<bool> {
 
 impl Row {
     /// Finds the outline that runs along `fence`.
-    pub fn of(fence: &Fence, embedded: &Embedded) -> Result<Self, Trouble> {
+    pub fn of(fence: &Fence, embedded: &Embedded, r: f64) -> Result<Self, Trouble> {
         let on_fence = |v: &VertexId| match embedded.origins.vertices[*v] {
             VertexOrigin::Input { vertex, .. } => fence.chain.contains(&vertex),
             VertexOrigin::Edge { ends, .. } => ends.iter().all(|e| fence.chain.contains(e)),
@@ -47,7 +48,11 @@ impl Row {
             let is_foot = |v: &VertexId| feet.contains(v);
             let first = chain[..before].iter().rposition(is_foot).unwrap_or(0);
             let last = chain[before..].iter().position(is_foot).map_or(chain.len() - 1, |k| before + k);
-            return Ok(Self { centre: fence.centre, chain: chain[first..=last].to_vec() });
+            let chain = chain[first..=last].to_vec();
+            let onto = |v: &VertexId| {
+                fence.centre + r * (embedded.mesh.positions[v.index()] - fence.centre).normalize_or_zero()
+            };
+            return Ok(Self { on_ball: chain[1..chain.len() - 1].iter().map(onto).collect(), chain });
         }
         Err(Trouble::at("the blend does not reach its end", vec![fence.centre]))
     }
@@ -57,17 +62,12 @@ impl Row {
         &self.chain[1..self.chain.len() - 1]
     }
 
-    fn on_ball(&self, p: DVec3, r: f64) -> DVec3 {
-        self.centre + r * (p - self.centre).normalize_or_zero()
-    }
-
-    /// The cap, whose own vertices have ids from `next` on, and its triangles.
-    pub fn cap(&self, cut: &Connected<&TriMesh>, r: f64, removed: &FaceMap<bool>, next: &mut u32) -> (Cap, Piece) {
-        let points: Vec<DVec3> = self.inner().iter().map(|&v| self.on_ball(cut.position(v), r)).collect();
+    /// The profile in which the piece ends instead, whose own vertices have ids from `next` on, and the triangles between.
+    pub fn close(&self, cut: &Connected<&TriMesh>, removed: &FaceMap<bool>, next: &mut u32) -> (Vec<VertexId>, Piece) {
         let (first, last) = (self.chain[0], self.chain[self.chain.len() - 1]);
-        let twins = (0..points.len() as u32).map(|k| VertexId(*next + k));
+        let twins = (0..self.on_ball.len() as u32).map(|k| VertexId(*next + k));
         let end: Vec<VertexId> = std::iter::once(first).chain(twins).chain([last]).collect();
-        *next += points.len() as u32;
+        *next += self.on_ball.len() as u32;
         let forwards = cut.halfedge(self.chain[0], self.chain[1]).is_some_and(|h| removed[h.face()]);
         let mut faces = vec![];
         for k in 0..end.len() - 1 {
@@ -75,17 +75,17 @@ impl Row {
             let pair = [[a, b, y], [a, y, x]].into_iter().filter(|f| f[0] != f[1] && f[1] != f[2] && f[2] != f[0]);
             faces.extend(pair.map(|f| if forwards { f } else { [f[0], f[2], f[1]] }));
         }
-        (Cap { centre: self.centre, end, section: self.chain.clone() }, Piece { faces, points })
+        (end, Piece { faces, points: self.on_ball.clone() })
     }
 }
 
-/// The piece with its rim along fences on the ball.
-pub(super) fn on_balls(piece: &CutOut, rows: &[Row], r: f64) -> CutOut {
+/// The piece with its rim along rows on the ball.
+pub(super) fn on_balls<'a>(piece: &CutOut, rows: impl IntoIterator<Item = &'a Row>) -> CutOut {
     let (mut mesh, rim) = (piece.mesh.clone(), piece.rim.clone());
     for row in rows {
         for (p, v) in mesh.positions.iter_mut().zip(&rim) {
-            if row.inner().contains(v) {
-                *p = row.on_ball(*p, r);
+            if let Some(k) = row.inner().iter().position(|w| w == v) {
+                *p = row.on_ball[k];
             }
         }
     }

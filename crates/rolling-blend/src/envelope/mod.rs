@@ -8,10 +8,12 @@
 //! |---|---|
 //! | `mod.rs` | the stages |
 //! | `patches.rs` | smooth patches, and normals within them |
+//! | `sides.rs` | on which side of a curve faces lie, where a patch reaches around its end |
 //! | `centre.rs` | the admissible centre nearest to a point |
 //! | `mark.rs` | what the ball cannot reach |
 //! | `outline.rs` | the curves around it |
 //! | `flip.rs` | needles of the piece that is cut out |
+//! | `flush.rs` | plane faces at which it ends, continued up to the ball |
 //! | `fences.rs` | cross-sections at which the piece ends, and the caps there |
 //! | `draw.rs` | the piece drawn onto the envelope |
 
@@ -19,9 +21,11 @@ mod centre;
 mod draw;
 mod fences;
 mod flip;
+mod flush;
 mod mark;
 mod outline;
 mod patches;
+mod sides;
 
 use crate::blended::Blended;
 use crate::cap::{Cap, Fence};
@@ -32,10 +36,13 @@ use crate::radii::Radii;
 use crate::sew::sew;
 use crate::sketch::{Drawing, Page};
 use crate::stitch::check;
+use crate::strip::Piece;
 use crate::trouble::Trouble;
 pub(crate) use centre::Ground;
+use centre::Stop;
 pub(crate) use draw::NO_BALL;
 use fences::{Row, fenced, on_balls};
+use flush::flush;
 use glam::DVec3;
 use mark::Fine;
 use mesh_core::{
@@ -74,16 +81,20 @@ pub(crate) fn serves(params: &Params) -> bool {
         && params.radii == Radii::default()
 }
 
-/// The first end of a curve at which a crease stays sharp: there the blend has to stop at the surface ahead, which a ball that rolls on
-/// all of the surface would round, too. `chosen` are the halfedges of all curves, both of each edge.
+/// The first end of a curve at which a crease of its own convexity stays sharp: there the blend has to stop at the surface
+/// ahead, which a ball that rolls on all of the surface would round, too. `chosen` are the halfedges of all curves, both of
+/// each edge.
 pub(crate) fn sharp_end(mesh: &Connected<TriMesh>, curves: &[&BlendCurve], chosen: &[bool]) -> Option<DVec3> {
-    let patches = Patches::new(mesh, chosen);
+    let patches = Patches::new(mesh, chosen, [], 0.0);
+    let is_ridge = |h: HalfedgeId| dihedral_angle(mesh, h).is_some_and(|a| a > 0.0);
     let ends = curves.iter().filter(|c| !c.closed).flat_map(|c| {
         let (first, last) = (c.halfedges.first(), c.halfedges.last());
-        first.map(|&h| mesh.tail(h)).into_iter().chain(last.map(|&h| mesh.head(h)))
+        first.map(|&h| (mesh.tail(h), h)).into_iter().chain(last.map(|&h| (mesh.head(h), h)))
     });
-    let stays = |v: &VertexId| mesh.ring(*v).any(|h| patches.is_wall(h) && !chosen[h.index()]);
-    ends.into_iter().find(stays).map(|v| mesh.position(v))
+    let stays = |&(v, own): &(VertexId, HalfedgeId)| {
+        mesh.ring(v).any(|h| patches.is_wall(h) && !chosen[h.index()] && is_ridge(h) == is_ridge(own))
+    };
+    ends.into_iter().find(stays).map(|(v, _)| mesh.position(v))
 }
 
 /// Both halfedges of every edge of some curves.
@@ -101,8 +112,22 @@ pub(crate) fn halfedges_of<'a>(
     chosen
 }
 
-/// Blends `curves`, all of one convexity, by the envelope of a ball of the radius asked for, as far as the `fences`. Gives
-/// a cap for each of these.
+/// An envelope, and where it ends in planes.
+pub(crate) struct Made {
+    pub blended: Blended,
+    /// A cap for each fence.
+    pub caps: Vec<Cap>,
+    pub continued: Vec<Continued>,
+}
+
+/// A plane face that was continued up to the ball.
+pub(crate) struct Continued {
+    /// Where its boundary was, and is no edge of the surface any more; and where it is now.
+    pub before: Vec<VertexId>,
+    pub now: Vec<VertexId>,
+}
+
+/// Blends `curves`, all of one convexity, by the envelope of a ball of the radius asked for, as far as the `fences`.
 pub(crate) fn blend(
     mesh: &Connected<TriMesh>,
     curves: &[BlendCurve],
@@ -110,19 +135,20 @@ pub(crate) fn blend(
     fences: &[Fence],
     params: &Params,
     watch: &Watch,
-) -> Result<(Blended, Vec<Cap>), Trouble> {
+) -> Result<Made, Trouble> {
     let r = params.radius;
     let chosen = halfedges_of(mesh, curves);
     let fenced = fenced(mesh, fences);
     let tree = TriBvh::build(mesh).map_err(|e| Trouble::Spine(e.into()))?;
-    let patches = Patches::new(mesh, &chosen);
+    let patches = Patches::new(mesh, &chosen, curves, r);
     let sign = if convexity == Convexity::Concave { 1.0 } else { -1.0 };
     let ground = Ground { mesh, patches: &patches, tree: &tree, sign, fences: &fenced };
     watch.step("blend", 0.0)?;
     let outlines = outlines(&ground, curves, &chosen, r)?;
     if outlines.is_empty() {
         let origins = Origins::identity(0, mesh.vertex_count(), mesh.face_count());
-        return Ok((Blended::new(mesh.mesh().clone(), origins, FaceId::from(mesh.face_count())), vec![]));
+        let blended = Blended::new(mesh.mesh().clone(), origins, FaceId::from(mesh.face_count()));
+        return Ok(Made { blended, caps: vec![], continued: vec![] });
     }
     watch.step("blend", 0.3)?;
     let embedded = embed(mesh, &outlines, &EmbedParams { snap: 0.1, reach: SNAP * r }, watch).map_err(refusal)?;
@@ -132,8 +158,19 @@ pub(crate) fn blend(
     let cut = Connected::new(&embedded.mesh).map_err(Trouble::not_manifold("the cut mesh is not a manifold"))?;
     let removed = enclosed(&ground, r, curves, &cut, &embedded)?;
     let pieces = cut_out(&embedded.mesh, &removed, &embedded.curves).pieces();
-    let rows = fences.iter().map(|f| Row::of(f, &embedded)).collect::<Result<Vec<_>, _>>()?;
-    let cut_out = CutOut { cut: &cut, removed: &removed, pieces: &pieces, embedded: &embedded, rows: &rows };
+    let mut rows = fences.iter().map(|f| Row::of(f, &embedded, r)).collect::<Result<Vec<_>, _>>()?;
+    let (flush, stops): (Vec<Row>, Vec<Stop>) =
+        flush(&ground, r, &chosen, &cut, &removed, &embedded).into_iter().map(|f| (f.row, f.stop)).unzip();
+    rows.extend(flush);
+    let cut_out = CutOut {
+        cut: &cut,
+        removed: &removed,
+        pieces: &pieces,
+        embedded: &embedded,
+        rows: &rows,
+        fences,
+        stops: &stops,
+    };
     let edge = EDGE * r * (params.tolerance.clamp(1e-6, 0.5) / 0.005).sqrt().min(1.0);
     let mut refusal = Trouble::at("the blend cannot be tessellated", vec![]);
     for share in FINER {
@@ -151,32 +188,34 @@ struct CutOut<'a> {
     removed: &'a FaceMap<bool>,
     pieces: &'a [piece::CutOut],
     embedded: &'a Embedded,
+    /// Those of the fences first.
     rows: &'a [Row],
+    fences: &'a [Fence],
+    stops: &'a [Stop],
 }
 
 /// The pieces drawn with edges about `edge` long, put in and checked.
 fn tessellated(
-    CutOut { cut, removed, pieces, embedded, rows }: &CutOut<'_>,
+    CutOut { cut, removed, pieces, embedded, rows, fences, stops }: &CutOut<'_>,
     ground: &Ground<'_>,
     r: f64,
     edge: f64,
     page: Page<'_>,
     watch: &Watch,
-) -> Result<(Blended, Vec<Cap>), Trouble> {
+) -> Result<Made, Trouble> {
     let drawn: Vec<TriMesh> = pieces
         .par_iter()
         .map(|piece| {
-            let piece = on_balls(piece, rows, r);
-            draw::draw(&piece, ground, r, edge, &kept_chords(cut, removed, &piece.rim), watch)
+            let piece = on_balls(piece, *rows);
+            draw::draw(&piece, ground, (r, edge), stops, &kept_chords(cut, removed, &piece.rim), watch)
         })
         .collect::<Result<_, _>>()?;
     page.draw_field("surface", || Drawing::Mesh(TriMesh::merged(&drawn)));
     let mut first_new = embedded.mesh.vertex_count() as u32;
-    let mut caps = rows.iter().map(|row| row.cap(cut, r, removed, &mut first_new)).collect::<Vec<_>>();
+    let (ends, mut back): (Vec<Vec<VertexId>>, Vec<Piece>) =
+        rows.iter().map(|row| row.close(cut, removed, &mut first_new)).unzip();
     let twins: BTreeMap<VertexId, VertexId> =
-        caps.iter().flat_map(|(cap, _)| cap.section.iter().copied().zip(cap.end.iter().copied())).collect();
-    let mut back = Vec::with_capacity(pieces.len() + caps.len());
-    back.extend(caps.iter_mut().map(|(_, piece)| std::mem::take(piece)));
+        rows.iter().zip(&ends).flat_map(|(row, end)| row.chain.iter().copied().zip(end.iter().copied())).collect();
     for (piece, drawn) in pieces.iter().zip(&drawn) {
         let rim: Vec<VertexId> = piece.rim.iter().map(|v| twins.get(v).copied().unwrap_or(*v)).collect();
         back.push(put_back(&rim, drawn, first_new));
@@ -186,11 +225,20 @@ fn tessellated(
         Opened { linkages: vec![], joints: vec![], stops: vec![], loops: vec![], embedded: (*embedded).clone() };
     let sewn = sew(&opened, removed, &back);
     check(&sewn, watch)?;
-    let in_caps: usize = back[..caps.len()].iter().map(|p| p.faces.len()).sum();
+    let in_caps: usize = back[..rows.len()].iter().map(|p| p.faces.len()).sum();
     unfolded(&sewn.mesh, sewn.first_new_face.index() + in_caps)?;
     let ids = |chain: &[VertexId]| chain.iter().map(|&v| sewn.id(v)).collect();
-    let caps = caps.iter().map(|(c, _)| Cap { centre: c.centre, end: ids(&c.end), section: ids(&c.section) }).collect();
-    Ok((Blended { fields: drawn.len(), ..Blended::new(sewn.mesh, sewn.origins, sewn.first_new_face) }, caps))
+    let closed = rows.iter().zip(&ends);
+    let cap = |(fence, (row, end)): (&Fence, (&Row, &Vec<VertexId>))| Cap {
+        centre: fence.centre,
+        end: ids(end),
+        section: ids(&row.chain),
+    };
+    let caps = fences.iter().zip(closed.clone()).map(cap).collect();
+    let continued = closed.skip(fences.len());
+    let continued = continued.map(|(row, end)| Continued { before: ids(&row.chain), now: ids(end) }).collect();
+    let blended = Blended { fields: drawn.len(), ..Blended::new(sewn.mesh, sewn.origins, sewn.first_new_face) };
+    Ok(Made { blended, caps, continued })
 }
 
 /// Refuses a surface that turns back on itself: no envelope does between edges as short as these. `first` is the first of the

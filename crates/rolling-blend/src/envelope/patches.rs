@@ -1,7 +1,9 @@
 //! The smooth patches between sharp edges, and normals that turn evenly from facet to facet within each.
 
+use super::sides::Sides;
 use glam::DVec3;
 use mesh_core::{Adjacency, Connected, FaceId, FaceMap, Faces, HalfedgeId, Positions, TriMesh, face_normals};
+use spine::BlendCurve;
 
 /// Edges that turn by at least this are walls between patches, in radians, whether they are blended or not: 30 degrees.
 const CREASE: f64 = 0.524;
@@ -20,6 +22,7 @@ pub(crate) struct Patches {
     facets: Vec<Facet>,
     /// Both halfedges of each edge between patches.
     walls: Vec<bool>,
+    sides: Sides,
 }
 
 /// Coplanar faces of one patch.
@@ -37,8 +40,14 @@ struct Band {
 }
 
 impl Patches {
-    /// The patches between `chosen` edges and creases.
-    pub fn new(mesh: &Connected<TriMesh>, chosen: &[bool]) -> Self {
+    /// The patches between `chosen` edges, those of `curves` among them, and creases. A patch on both sides of a curve is
+    /// told apart there as far as a ball of radius `r` reaches.
+    pub fn new<'a>(
+        mesh: &Connected<TriMesh>,
+        chosen: &[bool],
+        curves: impl IntoIterator<Item = &'a BlendCurve>,
+        r: f64,
+    ) -> Self {
         let normals = face_normals(mesh);
         let turn = |h: HalfedgeId, t: HalfedgeId| normals[h.face()].dot(normals[t.face()]);
         let crease = CREASE.cos();
@@ -52,7 +61,8 @@ impl Patches {
             !walls[h.index()] && turn(h, t) > flat && normals[seed].dot(normals[t.face()]) > flat
         });
         let facets = facets(mesh, &normals, &facet, &walls);
-        Self { of, normals, facet, facets, walls }
+        let sides = Sides::new(mesh, curves, &of, &walls, r);
+        Self { of, normals, facet, facets, walls, sides }
     }
 
     /// Whether an edge parts two patches.
@@ -63,6 +73,16 @@ impl Patches {
     /// The patch of a face.
     pub fn of(&self, face: FaceId) -> u32 {
         self.of[face]
+    }
+
+    /// Whether two faces lie in one patch, and not on different sides of a curve.
+    pub fn join(&self, f: FaceId, g: FaceId) -> bool {
+        self.of[f] == self.of[g] && !self.sides.part(f, g)
+    }
+
+    /// The facet of a face: coplanar faces of one patch.
+    pub fn facet(&self, face: FaceId) -> u32 {
+        self.facet[face]
     }
 
     /// The outward normal at a point of a face, averaged with the neighbours' near the edges between facets. Zero where a
@@ -86,7 +106,7 @@ impl Patches {
 
     /// Whether a ball at rest on `face` may be stopped by `other`.
     pub fn may_block(&self, face: FaceId, other: FaceId) -> bool {
-        self.of[face] != self.of[other] || self.normals[face].dot(self.normals[other]) < FACING.cos()
+        !self.join(face, other) || self.normals[face].dot(self.normals[other]) < FACING.cos()
     }
 }
 

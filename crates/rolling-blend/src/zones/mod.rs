@@ -18,7 +18,7 @@ mod section;
 use crate::blended::Blended;
 use crate::cap::{Caps, Moved};
 use crate::curve_blend::{CurveBlend, Method};
-use crate::envelope::{self, Ground, NO_BALL, Patches};
+use crate::envelope::{self, Continued, Ground, Made, NO_BALL, Patches};
 use crate::error::Error;
 use crate::networks::groups;
 use crate::params::{Overlap, Params};
@@ -27,21 +27,24 @@ use crate::stitch::{ROUNDS, attempt_between};
 use crate::trouble::Trouble;
 use cut::{Cut, ZoneEnd};
 use glam::DVec3;
-use mesh_core::{Adjacency, Connected, EdgeId, FaceOrigin, Faces, HalfedgeId, Stage, TriMesh, Watch};
+use mesh_core::{Adjacency, Connected, EdgeId, FaceOrigin, Faces, HalfedgeId, Stage, TriMesh, VertexId, Watch};
 use mesh_query::TriBvh;
 use plan::{Plan, Span};
 use section::CutBalls;
 use spine::{BlendCurve, Convexity};
+use std::collections::BTreeMap;
 
 /// How often places where strips fail are added to the zones.
-const TRIES: usize = 5;
-/// How near to a place of failure a curve is part of its zone, in radii: at first, and at most.
+const TRIES: usize = 6;
+/// How far from a place of failure its curve is part of the zone, in radii: at first, and at most.
 const NEAR: f64 = 2.5;
-const WIDEST: f64 = 10.0;
+const WIDEST: f64 = 40.0;
 /// Work spent on envelopes, in visits to faces; zones beyond that stay sharp. Each costs one visit to every face, and about so
 /// many for each radius of its curves' length.
-const VISITS: f64 = 1e6;
+const VISITS: f64 = 2e6;
 const VISITS_PER_RADIUS: f64 = 2.5e3;
+/// How much wider zones get.
+const WIDER: f64 = 4.0;
 /// What is said of these.
 const NO_TIME: &str = "too many places where the ball does not fit";
 /// Share of the full ball that is given up rather than have an edge sharp.
@@ -61,7 +64,7 @@ pub(crate) fn by_zones(
     let r = params.radius;
     let chosen = envelope::halfedges_of(mesh, curves);
     let tree = TriBvh::build(mesh).map_err(|e| Trouble::Spine(e.into()))?;
-    let patches = Patches::new(mesh, &chosen);
+    let patches = Patches::new(mesh, &chosen, curves, r);
     let fences = vec![false; chosen.len()];
     let ground = |sign: f64| Ground { mesh, patches: &patches, tree: &tree, sign, fences: &fences };
     let (inside, outside) = (ground(-1.0), ground(1.0));
@@ -134,14 +137,17 @@ fn candidate(plan: &mut Plan<'_>, budget: &mut f64, params: &Params, watch: &Wat
     Ok(Candidate { blended: on_whole(plan.balls.ground_mesh(), plan.balls.curves, &cut, made), failed })
 }
 
-/// Adds places to those around which there are zones; those that have one already get a wider one. Returns whether anything
-/// has changed.
+/// Adds places to those around which there are zones; those that have one already get a wider one, and those next to one
+/// are as wide, since a strip may fail all along a curve. Returns whether anything has changed.
 fn widen(places: &mut Vec<(DVec3, f64)>, new: &[DVec3], r: f64) -> bool {
     let before = places.clone();
     for &p in new {
+        let reach =
+            |q: &(DVec3, f64)| if q.0.distance(p) <= (q.1 + NEAR) * r { (WIDER * q.1).min(WIDEST) } else { NEAR };
+        let wide = before.iter().map(reach).fold(NEAR, f64::max);
         match places.iter_mut().find(|q| q.0.distance(p) <= SAME * r) {
-            Some(known) => known.1 = (2.0 * known.1).min(WIDEST),
-            None => places.push((p, NEAR)),
+            Some(known) => known.1 = wide,
+            None => places.push((p, wide)),
         }
     }
     before != *places
@@ -228,13 +234,15 @@ fn by_envelope(
     params: &Params,
     watch: &Watch,
 ) -> Result<(), Trouble> {
+    let mut continued: Vec<Continued> = vec![];
     for convexity in [first, first.opposite()] {
         let own = |i: usize| group[i] && cut.convexities[i] == convexity;
         if !(0..cut.pieces.len()).any(own) {
             continue;
         }
         so_far.connect().map_err(|_| Trouble::at("the blend pinches", vec![]))?;
-        let chosen = so_far.pieces(own);
+        let present = so_far.mesh.as_ref().unwrap_or(so_far.input);
+        let chosen = on_continued(present, so_far.pieces(own), &continued);
         if chosen.is_empty() {
             // The other convexity's blend has consumed them.
             so_far.consumed(own, Method::Envelope);
@@ -242,8 +250,9 @@ fn by_envelope(
         }
         let here: Vec<usize> = (0..ends.len()).filter(|&l| own(ends[l].zone)).collect();
         let fences: Vec<_> = here.iter().map(|&l| ends[l].fence.clone()).collect();
-        let present = so_far.mesh.as_ref().unwrap_or(so_far.input);
-        let (mut made, caps) = envelope::blend(present, &chosen, convexity, &fences, params, watch)?;
+        let Made { blended: mut made, caps, continued: own_continued } =
+            envelope::blend(present, &chosen, convexity, &fences, params, watch)?;
+        continued = own_continued;
         let moved = Moved::by(&made.origins);
         for end in ends.iter_mut() {
             end.move_on(&moved)
@@ -258,6 +267,35 @@ fn by_envelope(
         so_far.add(made, own);
     }
     Ok(())
+}
+
+/// Curves of which some edges bounded plane faces that were continued since: there they follow the new boundary.
+fn on_continued(mesh: &Connected<TriMesh>, curves: Vec<BlendCurve>, continued: &[Continued]) -> Vec<BlendCurve> {
+    let edge = |a: VertexId, b: VertexId| [a.min(b), a.max(b)];
+    let gone: BTreeMap<[VertexId; 2], usize> =
+        (0..continued.len()).flat_map(|i| continued[i].before.windows(2).map(move |w| (edge(w[0], w[1]), i))).collect();
+    let mut followed = vec![false; continued.len()];
+    let (mut found, mut run) = (vec![], vec![]);
+    for curve in curves {
+        let count = curve.halfedges.len();
+        for h in curve.halfedges {
+            match gone.get(&edge(mesh.tail(h), mesh.head(h))) {
+                Some(&i) => {
+                    followed[i] = true;
+                    found.push(BlendCurve { halfedges: std::mem::take(&mut run), closed: false });
+                }
+                None => run.push(h),
+            }
+        }
+        let closed = curve.closed && run.len() == count;
+        found.push(BlendCurve { halfedges: std::mem::take(&mut run), closed });
+    }
+    for (now, _) in continued.iter().zip(followed).filter(|f| f.1) {
+        let halfedges = now.now.windows(2).filter_map(|w| mesh.halfedge(w[0], w[1])).collect();
+        found.push(BlendCurve { halfedges, closed: false });
+    }
+    found.retain(|c| !c.halfedges.is_empty());
+    found
 }
 
 /// The edges around what the zones got, and those that stay sharp in them.

@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 const SPACING: f64 = 0.5;
 /// Stations of a curve, at most.
 const MOST: usize = 20_000;
+/// How far from a place of failure curves that do not pass it are taken in at most, in radii.
+const OTHERS: f64 = 10.0;
 /// Stretches of fewer stations between zones are not worth a strip.
 const SHORTEST: usize = 4;
 
@@ -115,7 +117,7 @@ impl<'a> Plan<'a> {
         plan
     }
 
-    /// Takes in the stations near a place; the nearest one where none is near.
+    /// Takes in the stations near a place: the nearest one, those of its curve, and nearer ones of others.
     fn seed(&self, p: DVec3, near: f64, waiting: &mut Vec<(usize, usize)>) {
         let mut nearest: Option<(f64, (usize, usize))> = None;
         for (c, stations) in self.stations.iter().enumerate() {
@@ -124,12 +126,16 @@ impl<'a> Plan<'a> {
                 if nearest.is_none_or(|n| d < n.0) {
                     nearest = Some((d, (c, k)));
                 }
-                if d < near {
+                if d < near.min(OTHERS * self.balls.r) {
                     waiting.push((c, k));
                 }
             }
         }
-        waiting.extend(nearest.map(|n| n.1));
+        let Some((_, nearest)) = nearest else { return };
+        let along = 0..self.stations[nearest.0].at.len();
+        waiting.extend(
+            along.map(|k| (nearest.0, k)).filter(|&(c, k)| (c, k) == nearest || self.place(c, k).distance(p) < near),
+        );
     }
 
     fn place(&self, c: usize, k: usize) -> DVec3 {

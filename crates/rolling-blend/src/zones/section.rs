@@ -93,16 +93,16 @@ impl<'a> CutBalls<'a> {
             return None;
         }
         let twin = mesh.twin(halfedge)?;
-        let sides = [halfedge, twin].map(|h| ground.patches.of(h.face()));
-        if sides[0] == sides[1] {
+        let sides = [halfedge, twin].map(HalfedgeId::face);
+        if ground.patches.join(sides[0], sides[1]) {
             return None;
         }
         let centre = ground.centre(x, r, halfedge.face())?;
         if (centre - x).dot(along).abs() > SQUARE * r {
             return None;
         }
-        let foot = |side: u32| {
-            let found = ground.tree.closest_point_where(mesh, centre, 1.02 * r, |f| ground.patches.of(f) == side)?;
+        let foot = |side: FaceId| {
+            let found = ground.tree.closest_point_where(mesh, centre, 1.02 * r, |f| ground.patches.join(f, side))?;
             Some(found.point)
         };
         let feet = [foot(sides[0])?, foot(sides[1])?];
@@ -153,9 +153,9 @@ impl<'a> CutBalls<'a> {
         let x = a.lerp(b, ball.t);
         let apex = SurfacePoint::Edge { halfedge: ball.halfedge, t: ball.t };
         let twin = mesh.twin(ball.halfedge)?;
-        let sides = [ball.halfedge, twin].map(|h| ground.patches.of(h.face()));
+        let sides = [ball.halfedge, twin].map(HalfedgeId::face);
         let on = |side: usize, p: DVec3| {
-            let found = ground.tree.closest_point_where(mesh, p, self.r, |f| ground.patches.of(f) == sides[side])?;
+            let found = ground.tree.closest_point_where(mesh, p, self.r, |f| ground.patches.join(f, sides[side]))?;
             Some((found.surface_point(mesh), ground.patches.face_normal(found.face)))
         };
         // From the foot to the apex, both left out; the ball's points between are met by rays from the centre.
