@@ -75,7 +75,7 @@ pub(crate) fn by_zones(
     let mut more = trouble;
     let mut best: Option<(Candidate, Plan<'_>)> = None;
     let mut last = Plan::around(&balls, &[]);
-    let mut budget = VISITS;
+    let mut spent = Spent { budget: VISITS, failures: BTreeMap::new() };
     for _ in 0..TRIES {
         let mut plan = loop {
             let Trouble::Places { places: new, .. } = &more else { break None };
@@ -88,7 +88,7 @@ pub(crate) fn by_zones(
             }
         };
         let Some(plan) = &mut plan else { break };
-        let made = candidate(plan, &mut budget, params, watch);
+        let made = candidate(plan, &mut spent, params, watch);
         last = plan.clone();
         match made {
             Ok(made) => {
@@ -109,11 +109,19 @@ pub(crate) fn by_zones(
     // Where the envelope fails, a strip with a smaller ball here and there may not.
     best.failed.iter().flat_map(|f| &f.spans).for_each(|&span| plan.release(span));
     let shrinking = Params { overlap: Overlap::Shrink, ..params.clone() };
-    match candidate(&mut plan, &mut budget, &shrinking, watch) {
+    match candidate(&mut plan, &mut spent, &shrinking, watch) {
         Ok(made) if made.blended.full_share >= best.blended.full_share - DEARER => Ok(made.blended),
         Err(Trouble::Cancelled(c)) => Err(c.into()),
         _ => Ok(best.blended),
     }
+}
+
+/// What earlier tries have cost and shown.
+struct Spent {
+    /// Visits to faces that are left.
+    budget: f64,
+    /// Zones that the envelope does not fill, by their stretches: where and why.
+    failures: BTreeMap<Vec<Span>, (DVec3, &'static str)>,
 }
 
 /// A blend of all curves, and the zones in which they stay sharp.
@@ -131,9 +139,9 @@ struct Failed {
 }
 
 /// Blends all curves as planned.
-fn candidate(plan: &mut Plan<'_>, budget: &mut f64, params: &Params, watch: &Watch) -> Result<Candidate, Trouble> {
+fn candidate(plan: &mut Plan<'_>, spent: &mut Spent, params: &Params, watch: &Watch) -> Result<Candidate, Trouble> {
     let cut = Cut::along(plan, params)?;
-    let (made, failed) = by_pieces(&cut, budget, params, watch)?;
+    let (made, failed) = by_pieces(&cut, spent, params, watch)?;
     Ok(Candidate { blended: on_whole(plan.balls.ground_mesh(), plan.balls.curves, &cut, made), failed })
 }
 
@@ -157,7 +165,7 @@ fn widen(places: &mut Vec<(DVec3, f64)>, new: &[DVec3], r: f64) -> bool {
 type Pieces<'a> = (SoFar<'a>, Vec<Failed>);
 
 /// Blends the pieces: zones by the envelope, the others by strips.
-fn by_pieces<'a>(cut: &'a Cut, budget: &mut f64, params: &Params, watch: &Watch) -> Result<Pieces<'a>, Trouble> {
+fn by_pieces<'a>(cut: &'a Cut, spent: &mut Spent, params: &Params, watch: &Watch) -> Result<Pieces<'a>, Trouble> {
     let mut failed = vec![];
     let mut so_far = SoFar::new(&cut.mesh, &cut.pieces, params.radius);
     let mut ends = cut.ends.clone();
@@ -166,14 +174,16 @@ fn by_pieces<'a>(cut: &'a Cut, budget: &mut f64, params: &Params, watch: &Watch)
         let own: Vec<&BlendCurve> = cut.pieces.iter().zip(&group).filter(|c| *c.1).map(|c| c.0).collect();
         let length: f64 = own.iter().map(|c| c.length(&cut.mesh)).sum();
         let cost = cut.mesh.face_count() as f64 + VISITS_PER_RADIUS * length / params.radius;
-        let mut made = match envelope::sharp_end(&cut.mesh, &own, &chosen) {
-            Some(at) => Err(Trouble::at("the curve ends at edges that stay sharp", vec![at])),
-            None => Ok(()),
+        let spans: Vec<Span> = (0..group.len()).filter(|&i| group[i]).map(|i| cut.spans[i]).collect();
+        let mut made = match (spent.failures.get(&spans), envelope::sharp_end(&cut.mesh, &own, &chosen)) {
+            (Some(&(at, what)), _) => Err(Trouble::at(what, vec![at])),
+            (_, Some(at)) => Err(Trouble::at("the curve ends at edges that stay sharp", vec![at])),
+            _ => Ok(()),
         };
         if made.is_ok() {
             for first in [first, first.opposite()] {
-                *budget -= cost;
-                if *budget < 0.0 {
+                spent.budget -= cost;
+                if spent.budget < 0.0 {
                     made = Err(Trouble::at(NO_TIME, vec![]));
                     break;
                 }
@@ -194,7 +204,7 @@ fn by_pieces<'a>(cut: &'a Cut, budget: &mut f64, params: &Params, watch: &Watch)
         if let Err(trouble) = made {
             let at = trouble.place().unwrap_or_else(|| own[0].points(&cut.mesh).first().copied().unwrap_or_default());
             so_far.leave(|i| group[i], at, trouble.what());
-            let spans = (0..group.len()).filter(|&i| group[i]).map(|i| cut.spans[i]).collect();
+            spent.failures.insert(spans.clone(), (at, trouble.what()));
             failed.push(Failed { at, may_be_wider: ![NO_BALL, NO_TIME].contains(&trouble.what()), spans });
         }
     }

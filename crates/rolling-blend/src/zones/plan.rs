@@ -27,7 +27,7 @@ struct Stations {
 }
 
 /// A stretch of a curve between the stations of two cuts; `None` stands for the end of an open curve.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Span {
     pub curve: usize,
     pub from: Option<usize>,
