@@ -11,6 +11,7 @@
 //! | `options.rs` | options of operations: the files they name, what is wrong with them |
 //! | `drawings.rs` | what the stages of a blend draw |
 //! | `failure.rs` | exit codes |
+//! | `job.rs` | one document without a session |
 //! | `session.rs` | one command: reading, progress, messages, writing |
 //! | `text_file.rs` | files of curves, clusters, profiles and the like |
 //! | `output.rs` | files that appear all at once or not at all |
@@ -20,6 +21,8 @@
 mod args;
 mod drawings;
 mod failure;
+#[allow(dead_code, reason = "for the batch door")]
+mod job;
 mod length;
 mod options;
 mod output;
@@ -28,6 +31,12 @@ mod session;
 mod shared_args;
 mod text_file;
 mod verbs;
+
+/// The same by the name that other doors know.
+#[allow(unused_imports, reason = "for the batch door")]
+pub(crate) mod document {
+    pub(crate) use crate::job::{JobResult, job};
+}
 
 use args::{Cli, Verb, with_bare_weld};
 use clap::FromArgMatches;
