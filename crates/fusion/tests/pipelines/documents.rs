@@ -6,13 +6,11 @@ use fusion::mesh_core::{FaceOrigin, VertexOrigin, Watch, bounds, shapes, volume}
 use fusion::operation::{Blend, Boolean, Cut, Linked, Plane, Pose, Precision, SetOperation};
 use glam::DVec3;
 use mesh_io::Model;
-use proptest::prelude::*;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Every part is a unit cube, but `ball`.
-fn sources() -> Given {
+pub fn sources() -> Given {
     let mut given = Given::default();
     let mut cube = Model::from(shapes::cuboid(DVec3::ONE));
     cube.uvs = Some((0..36).map(|i| [f64::from(i), 0.5]).collect::<Vec<_>>().into());
@@ -21,7 +19,7 @@ fn sources() -> Given {
     given
 }
 
-fn evaluate(document: &Document, cache: &Cache) -> Result<Evaluation, Error> {
+pub fn evaluate(document: &Document, cache: &Cache) -> Result<Evaluation, Error> {
     document.evaluate_from(&mut sources(), cache, Precisions::ByFile, &Watch::default())
 }
 
@@ -30,7 +28,7 @@ fn run(text: &str) -> Result<Evaluation, Error> {
 }
 
 /// All that a result is, without times.
-fn bytes(made: &Result<Evaluation, Error>) -> String {
+pub fn bytes(made: &Result<Evaluation, Error>) -> String {
     let made = match made {
         Ok(made) => made,
         Err(error) => return error.to_string(),
@@ -48,7 +46,7 @@ fn bytes(made: &Result<Evaluation, Error>) -> String {
     text
 }
 
-const CUBES: &str = "
+pub const CUBES: &str = "
 [[part]]
 name = \"a\"
 mesh = \"cube.off\"
@@ -289,165 +287,4 @@ fn each_output_survives_its_own_format() {
     assert_eq!(document.outputs().iter().map(|o| o.precision()).collect::<Vec<_>>(), [Precision::F64, Precision::F32]);
     let made = evaluate(&document, &Cache::default()).unwrap();
     assert!(made.outputs.iter().all(|o| o.outcome.report.validity.self_intersections == Some(0)));
-}
-
-/// A random edit of one option or switch.
-#[derive(Clone, Debug)]
-struct Edit(usize, usize, f64);
-
-fn edits() -> impl Strategy<Value = Vec<Edit>> {
-    prop::collection::vec((0usize..6, 0usize..3, 0.05f64..0.45).prop_map(|(a, b, c)| Edit(a, b, c)), 1..6)
-}
-
-fn steps() -> impl Strategy<Value = Vec<(usize, f64)>> {
-    prop::collection::vec((0usize..5, 0.05f64..0.45), 2..5)
-}
-
-/// A document of random steps on two cubes and a ball.
-fn random(steps: &[(usize, f64)]) -> String {
-    let mut text = format!("version = 2\n{CUBES}[[part]]\nname = \"c\"\nmesh = \"ball.off\"\nscale = 0.4\n");
-    for &(kind, x) in steps {
-        text += &match kind {
-            0 => format!("[[step]]\ndo = \"pose\"\nof = \"b\"\ntranslate = [{x:?}, 0.031, 0.017]\n"),
-            1 => format!("[[step]]\ndo = \"union\"\nof = [\"a\", \"b\"]\nnear = [[{x:?}, 0, 0]]\n"),
-            2 => format!("[[step]]\ndo = \"difference\"\nof = [\"a\", \"c\"]\nlonger = {x:?}\n"),
-            3 => format!(
-                "[[step]]\ndo = \"cut\"\nof = \"c\"\nplane = {{ point = [0, 0, {x:?}], normal = [0.1, 0, 1] }}\n"
-            ),
-            _ => format!("[[step]]\ndo = \"pose\"\nof = \"c\"\nscale = {:?}\nas = \"d\"\n", 1.0 + x),
-        };
-    }
-    text + "[[output]]\nof = \"a\"\nfile = \"a.off\"\n[[output]]\nof = \"c\"\nfile = \"c.stl\"\n"
-}
-
-fn apply(document: &mut Document, &Edit(step, what, x): &Edit) {
-    let number = 1 + step % document.steps().len();
-    let verb = document.steps()[number - 1].action.verb();
-    let value = format!("{x:?}");
-    let (option, value) = match (what, verb) {
-        (0, _) => ("off", (x < 0.2).to_string()),
-        (_, "pose") => ("scale", format!("{:?}", 1.0 + x)),
-        (_, "cut") => ("plane.point", format!("[0, 0, {value}]")),
-        (_, _) => ("longer", value),
-    };
-    document.set(&format!("{number}.{option}"), &value).unwrap();
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
-
-    /// With results kept in memory, in a folder, or in both, edits give the bytes of a fresh evaluation.
-    #[test]
-    fn kept_results_are_those_of_a_fresh_evaluation(steps in steps(), edits in edits()) {
-        let folder = tempfile::tempdir().unwrap();
-        let caches = [Cache::default(), Cache::in_memory(20_000).with_folder(folder.path(), 1 << 30)];
-        let mut document = Document::parse(&random(&steps)).unwrap();
-        for edit in &edits {
-            let fresh = bytes(&evaluate(&document, &Cache::in_memory(0)));
-            for cache in &caches {
-                prop_assert_eq!(&bytes(&evaluate(&document, cache)), &fresh);
-            }
-            let other = Cache::in_memory(0).with_folder(folder.path(), 1 << 30);
-            prop_assert_eq!(&bytes(&evaluate(&document, &other)), &fresh);
-            apply(&mut document, edit);
-        }
-    }
-}
-
-fn known(made: &Evaluation) -> Vec<bool> {
-    made.steps.iter().map(|s| s.is_known).collect()
-}
-
-const CHAIN: &str = "[[step]]\ndo = \"union\"\nof = [\"a\", \"b\"]\n[[step]]\ndo = \"pose\"\nof = \"a\"\nscale = 2\n[[step]]\ndo = \"blend\"\nof = \"a\"\nradius = 0.1\n[[output]]\nof = \"a\"\nfile = \"a.off\"\n";
-
-#[test]
-fn an_edit_takes_only_what_it_touches() {
-    let mut document = Document::parse(&format!("version = 2\n{CUBES}{CHAIN}")).unwrap();
-    let cache = Cache::default();
-    assert_eq!(known(&evaluate(&document, &cache).unwrap()), [false; 3]);
-    assert_eq!(known(&evaluate(&document, &cache).unwrap()), [true; 3]);
-    document.set("3.radius", "0.05").unwrap();
-    assert_eq!(known(&evaluate(&document, &cache).unwrap()), [true, true, false]);
-    document.set("2.scale", "3").unwrap();
-    assert_eq!(known(&evaluate(&document, &cache).unwrap()), [true, false, false]);
-    // The contents of a part count, not its name.
-    let mut other = sources();
-    other.0.insert("cube.off".into(), Arc::new(shapes::cuboid(DVec3::new(1.0, 1.0, 1.5)).into()));
-    let made = document.evaluate_from(&mut other, &cache, Precisions::ByFile, &Watch::default()).unwrap();
-    assert_eq!(known(&made), [false; 3]);
-}
-
-fn entries(folder: &Path) -> Vec<PathBuf> {
-    let mut all: Vec<_> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
-    all.sort();
-    all
-}
-
-/// Flipped, cut short, emptied, or another's: what is not what was written is done again, and written again.
-#[test]
-fn a_damaged_entry_is_done_again() {
-    let folder = tempfile::tempdir().unwrap();
-    let document = Document::parse(&format!("version = 2\n{CUBES}{CHAIN}")).unwrap();
-    let cache = || Cache::in_memory(0).with_folder(folder.path(), 1 << 30);
-    let fresh = evaluate(&document, &cache());
-    let whole = bytes(&fresh);
-    let all = entries(folder.path());
-    // Three steps, and the pose of the second part.
-    assert_eq!(all.len(), 4);
-    let sound: Vec<_> = all.iter().map(|path| fs::read(path).unwrap()).collect();
-    let damages: [&dyn Fn(usize) -> Vec<u8>; 5] = [
-        &|i| sound[i].iter().enumerate().map(|(k, b)| if k == sound[i].len() / 2 { b ^ 1 } else { *b }).collect(),
-        &|i| sound[i][..sound[i].len() - 7].to_vec(),
-        &|_| vec![],
-        &|i| sound[(i + 1) % 4].clone(),
-        &|i| [&sound[i][..], b"more"].concat(),
-    ];
-    for damage in damages {
-        for (i, path) in all.iter().enumerate() {
-            fs::write(path, damage(i)).unwrap();
-        }
-        let made = evaluate(&document, &cache());
-        assert_eq!(known(made.as_ref().unwrap()), [false; 3]);
-        assert_eq!(bytes(&made), whole);
-        let again = evaluate(&document, &cache());
-        assert_eq!(known(again.as_ref().unwrap()), [true; 3]);
-        assert_eq!(bytes(&again), whole);
-    }
-}
-
-/// A folder that cannot be made costs nothing but time; one that is full keeps the newest.
-#[test]
-fn a_folder_has_bounds() {
-    let folder = tempfile::tempdir().unwrap();
-    let document = Document::parse(&format!("version = 2\n{CUBES}{CHAIN}")).unwrap();
-    let file = folder.path().join("file");
-    fs::write(&file, "").unwrap();
-    evaluate(&document, &Cache::default().with_folder(&file, 1 << 30)).unwrap();
-    let inside = folder.path().join("inside");
-    evaluate(&document, &Cache::default().with_folder(&inside, 0)).unwrap();
-    assert!(entries(&inside).is_empty());
-    evaluate(&document, &Cache::default().with_folder(&inside, 1 << 30)).unwrap();
-    assert_eq!(entries(&inside).len(), 4);
-}
-
-/// A cancelled step leaves nothing behind that a later one could take for a result.
-#[test]
-fn a_cancelled_evaluation_keeps_only_whole_steps() {
-    let document = Document::parse(&format!("version = 2\n{CUBES}{CHAIN}")).unwrap();
-    let cache = Cache::default();
-    let fresh = bytes(&evaluate(&document, &Cache::in_memory(0)));
-    for steps in 1..40 {
-        let left = std::sync::atomic::AtomicUsize::new(steps);
-        let handle: Arc<std::sync::OnceLock<Watch>> = Arc::default();
-        let inner = Arc::clone(&handle);
-        let watch = Watch::new(move |_, _| {
-            if left.fetch_sub(1, std::sync::atomic::Ordering::Relaxed) == 1 {
-                inner.get().map(Watch::cancel);
-            }
-        });
-        let _ = handle.set(watch.clone());
-        let made = document.evaluate_from(&mut sources(), &cache, Precisions::ByFile, &watch);
-        assert!(made.as_ref().is_ok() || made.as_ref().is_err_and(Error::is_cancelled));
-    }
-    assert_eq!(bytes(&evaluate(&document, &cache)), fresh);
 }

@@ -10,6 +10,7 @@ mod documents;
 mod hidden;
 mod invariants;
 mod keep;
+mod kept;
 mod placement;
 mod primitives;
 mod radii;
