@@ -8,7 +8,9 @@ use crate::verbs::cluster::ClusterArgs;
 use crate::verbs::compose::ComposeArgs;
 use crate::verbs::cut::{CutArgs, spread_path};
 use crate::verbs::detail::DetailArgs;
+use crate::verbs::pose::PoseArgs;
 use crate::verbs::remesh::RemeshArgs;
+use crate::verbs::run::RunArgs;
 use crate::verbs::sharpen::SharpenArgs;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use fusion::operation::{Length, direction};
@@ -63,17 +65,19 @@ pub enum Verb {
     Cluster(ClusterArgs),
     /// Make triangles even; boundaries and features are kept
     Remesh(RemeshArgs),
+    /// Move a mesh: scale it, turn it, shift it, set it down on another
+    Pose(PoseArgs),
     /// Take away what lies beyond a plane or a path over the surface, leaving a clean opening
     Cut(CutArgs),
-    /// Replay a recipe: parts, cuts, poses, joins and blends from one TOML file
-    Run(Run),
+    /// Evaluate a document: parts, and any operations on them in any order, from one TOML file
+    Run(RunArgs),
     /// Draw a still picture
     Render(Render),
     /// Build the showcase models with their reports and pictures; needs no input
     Demo(Demo),
     /// Print a script that lets a shell complete verbs, options and files
     Completions(Completions),
-    /// Print the JSON schema of operations and their options
+    /// Print the JSON schema of documents, operations and their options
     Schema,
     /// Print the manual page, or write one for every verb
     Man(Man),
@@ -95,6 +99,7 @@ impl Verb {
             Self::Detail(_) => "detail",
             Self::Cluster(_) => "cluster",
             Self::Remesh(_) => "remesh",
+            Self::Pose(_) => "pose",
             Self::Cut(_) => "cut",
             Self::Run(_) => "run",
             Self::Render(_) => "render",
@@ -154,21 +159,6 @@ pub struct Features {
     pub no_radii: bool,
     #[command(flatten)]
     pub source: Source,
-}
-
-#[derive(Args)]
-pub struct Run {
-    /// The recipe, a TOML file (docs/recipes.md); paths in it are relative to it
-    pub recipe: PathBuf,
-    /// Write the result here and not where the recipe says
-    #[arg(short, long, value_name = "OUTPUT")]
-    pub output: Option<PathBuf>,
-    /// Format of the output, where its extension does not tell; needed for `-`
-    #[arg(long, hide_short_help = true, value_name = "FORMAT")]
-    pub to: Option<String>,
-    /// Write where every vertex and face of the result came from, as JSON
-    #[arg(long, hide_short_help = true, value_name = "FILE.json")]
-    pub origins: Option<PathBuf>,
 }
 
 #[derive(Args)]

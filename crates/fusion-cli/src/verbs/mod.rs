@@ -12,6 +12,7 @@ pub mod detail;
 pub mod features;
 pub mod info;
 pub mod man;
+pub mod pose;
 pub mod remesh;
 pub mod render;
 pub mod run;
