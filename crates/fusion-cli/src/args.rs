@@ -2,14 +2,18 @@
 
 use crate::length::angle;
 use crate::shared_args::{Common, Source, Target};
+use crate::verbs::batch::BatchArgs;
 use crate::verbs::blend::BlendArgs;
 use crate::verbs::boolean::BooleanArgs;
 use crate::verbs::cluster::ClusterArgs;
 use crate::verbs::compose::ComposeArgs;
 use crate::verbs::cut::{CutArgs, spread_path};
 use crate::verbs::detail::DetailArgs;
+use crate::verbs::grid::GridArgs;
 use crate::verbs::remesh::RemeshArgs;
 use crate::verbs::sharpen::SharpenArgs;
+use crate::verbs::summary::SummaryArgs;
+use crate::verbs::worker::WorkerArgs;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use fusion::operation::{Length, direction};
 use glam::DVec3;
@@ -67,6 +71,15 @@ pub enum Verb {
     Cut(CutArgs),
     /// Replay a recipe: parts, cuts, poses, joins and blends from one TOML file
     Run(Run),
+    /// Replay many documents in worker processes, one line of results each
+    Batch(BatchArgs),
+    /// Answer requests of `batch`
+    #[command(hide = true)]
+    Worker(WorkerArgs),
+    /// Write a line of a jobs file for each combination of parameters
+    Grid(GridArgs),
+    /// Sum up the results of `batch` on one page
+    Summary(SummaryArgs),
     /// Draw a still picture
     Render(Render),
     /// Build the showcase models with their reports and pictures; needs no input
@@ -97,6 +110,10 @@ impl Verb {
             Self::Remesh(_) => "remesh",
             Self::Cut(_) => "cut",
             Self::Run(_) => "run",
+            Self::Batch(_) => "batch",
+            Self::Worker(_) => "worker",
+            Self::Grid(_) => "grid",
+            Self::Summary(_) => "summary",
             Self::Render(_) => "render",
             Self::Demo(_) => "demo",
             Self::Completions(_) => "completions",
