@@ -134,18 +134,18 @@ fn parts(text: &str, folder: &Path) -> Vec<String> {
     parts.filter_map(|p| p.get("mesh")?.as_str()).map(|mesh| folder.join(mesh).display().to_string()).collect()
 }
 
-/// Those of the report and of its steps.
+/// What the report of a document tells.
 fn diagnostics(report: &Value) -> Vec<Value> {
-    let of = |report: &Value| report["diagnostics"].as_array().cloned().unwrap_or_default();
-    let steps = report["steps"].as_array().into_iter().flatten();
-    [report].into_iter().chain(steps).flat_map(of).collect()
+    report["diagnostics"].as_array().cloned().unwrap_or_default()
 }
 
+/// Those of the report, and those of its steps by their numbers.
 fn figures(report: &Value) -> Map<String, Value> {
     let mut figures = report["figures"].as_object().cloned().unwrap_or_default();
     for (i, step) in report["steps"].as_array().into_iter().flatten().enumerate() {
+        let number = step["step"].as_u64().unwrap_or(i as u64 + 1);
         let of_step = step["figures"].as_object().into_iter().flatten();
-        figures.extend(of_step.map(|(name, value)| (format!("{}.{name}", i + 1), value.clone())));
+        figures.extend(of_step.map(|(name, value)| (format!("{number}.{name}"), value.clone())));
     }
     figures
 }

@@ -126,7 +126,9 @@ pub fn run(session: &Session, args: &BatchArgs) -> Result<(), Failure> {
     if stopped() {
         return Err(Failure::cancelled());
     }
-    session.write_files(vec![], &report(&all, ended.len(), seconds))?;
+    if session.common().report.is_some() {
+        session.write_files(vec![], &report(&all, ended.len(), seconds))?;
+    }
     let bad = all.iter().filter(|o| o.state != State::Done || o.has_warnings()).count();
     if session.common().strict && bad > 0 {
         return Err(Failure::impossible(format!(

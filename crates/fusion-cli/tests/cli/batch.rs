@@ -16,7 +16,7 @@ pub fn document(dx: f64) -> String {
 /// A document that cuts where there is nothing.
 pub fn impossible() -> String {
     "version = 1\noutput = \"out.off\"\n[[part]]\nname = \"a\"\nmesh = \"a.off\"\n\
-     [[cut]]\npart = \"a\"\nplane = { point = [0, 0, 7], normal = [0, 0, 1] }\n"
+     [[part.cut]]\nplane = { point = [0, 0, 7], normal = [0, 0, 1] }\n"
         .into()
 }
 
