@@ -14,7 +14,7 @@ pub struct Options {
     output: PathBuf,
 }
 
-/// Writes every part and every model of the recipes as double-precision PLY, and every polyhedron as OBJ with its clusters beside it.
+/// Writes every part and every model of the documents as double-precision PLY, and every polyhedron as OBJ with its clusters beside it.
 pub fn run(options: &Options) -> Result<(), Fault> {
     let folder = root().join(&options.output);
     fs::create_dir_all(&folder)?;

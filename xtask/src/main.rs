@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `ci.rs` | everything a change must pass, in order |
 //! | `regress/` | cases against approved records, real models in bulk |
-//! | `fixtures.rs`, `models.rs` | the parts of all cases and recipes as files |
+//! | `fixtures.rs`, `models.rs` | the parts of all cases and documents as files |
 //! | `collect.rs` | real models from where they come from |
 //! | `bench.rs` | benchmarks into a page |
 //! | `pages.rs` | what stands between marks on a page |
@@ -46,11 +46,11 @@ enum Chore {
     Fixtures(fixtures::Options),
     /// Collects the real models behind the tables in docs/ into a folder, and checks that they are the ones measured
     Models(collect::Options),
-    /// Writes the keys of recipes into docs/recipes.md
+    /// Writes the keys of documents into docs/documents.md
     Reference,
     /// Runs the cases of fixtures/ against their approved records; with --models also real models
     Regress(regress::Options),
-    /// Checks crate arrows, file lengths, citations, paths and the reference of recipes
+    /// Checks crate arrows, file lengths, citations, paths and the reference of documents
     Tidy,
 }
 
@@ -60,7 +60,7 @@ fn main() -> ExitCode {
         Chore::Bench(options) => bench::run(&options),
         Chore::Fixtures(options) => fixtures::run(&options),
         Chore::Models(options) => collect::run(&options),
-        Chore::Reference => pages::RECIPES.renew(&fusion::recipe::reference()),
+        Chore::Reference => pages::DOCUMENTS.renew(&fusion::document::reference()),
         Chore::Regress(options) => regress::run(&options),
         Chore::Tidy => tidy::run(),
     };

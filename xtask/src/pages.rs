@@ -11,9 +11,9 @@ pub struct Part {
     pub marks: [&'static str; 2],
 }
 
-/// What the tables of recipes take.
-pub const RECIPES: Part = Part {
-    page: "docs/recipes.md",
+/// What the tables of documents take.
+pub const DOCUMENTS: Part = Part {
+    page: "docs/documents.md",
     marks: ["<!-- keys: written by cargo xtask reference -->", "<!-- end of keys -->"],
 };
 

@@ -42,8 +42,9 @@ pub fn run() -> Result<(), Fault> {
             faults.push(format!("{name}: does not inherit the workspace's lints"));
         }
     }
-    if !pages::RECIPES.holds(&fusion::recipe::reference())? {
-        faults.push(format!("{}: its keys are not those of the code; run cargo xtask reference", pages::RECIPES.page));
+    if !pages::DOCUMENTS.holds(&fusion::document::reference())? {
+        faults
+            .push(format!("{}: its keys are not those of the code; run cargo xtask reference", pages::DOCUMENTS.page));
     }
     for fault in &faults {
         println!("tidy: {fault}");

@@ -10,7 +10,9 @@ use crate::verbs::compose::ComposeArgs;
 use crate::verbs::cut::{CutArgs, spread_path};
 use crate::verbs::detail::DetailArgs;
 use crate::verbs::grid::GridArgs;
+use crate::verbs::pose::PoseArgs;
 use crate::verbs::remesh::RemeshArgs;
+use crate::verbs::run::RunArgs;
 use crate::verbs::sharpen::SharpenArgs;
 use crate::verbs::summary::SummaryArgs;
 use crate::verbs::worker::WorkerArgs;
@@ -67,10 +69,12 @@ pub enum Verb {
     Cluster(ClusterArgs),
     /// Make triangles even; boundaries and features are kept
     Remesh(RemeshArgs),
+    /// Move a mesh: scale it, turn it, shift it, set it down on another
+    Pose(PoseArgs),
     /// Take away what lies beyond a plane or a path over the surface, leaving a clean opening
     Cut(CutArgs),
-    /// Replay a recipe: parts, cuts, poses, joins and blends from one TOML file
-    Run(Run),
+    /// Evaluate a document: parts, and any operations on them in any order, from one TOML file
+    Run(RunArgs),
     /// Replay many documents in worker processes, one line of results each
     Batch(BatchArgs),
     /// Answer requests of `batch`
@@ -86,7 +90,7 @@ pub enum Verb {
     Demo(Demo),
     /// Print a script that lets a shell complete verbs, options and files
     Completions(Completions),
-    /// Print the JSON schema of operations and their options
+    /// Print the JSON schema of documents, operations and their options
     Schema,
     /// Print the manual page, or write one for every verb
     Man(Man),
@@ -108,6 +112,7 @@ impl Verb {
             Self::Detail(_) => "detail",
             Self::Cluster(_) => "cluster",
             Self::Remesh(_) => "remesh",
+            Self::Pose(_) => "pose",
             Self::Cut(_) => "cut",
             Self::Run(_) => "run",
             Self::Batch(_) => "batch",
@@ -171,21 +176,6 @@ pub struct Features {
     pub no_radii: bool,
     #[command(flatten)]
     pub source: Source,
-}
-
-#[derive(Args)]
-pub struct Run {
-    /// The recipe, a TOML file (docs/recipes.md); paths in it are relative to it
-    pub recipe: PathBuf,
-    /// Write the result here and not where the recipe says
-    #[arg(short, long, value_name = "OUTPUT")]
-    pub output: Option<PathBuf>,
-    /// Format of the output, where its extension does not tell; needed for `-`
-    #[arg(long, hide_short_help = true, value_name = "FORMAT")]
-    pub to: Option<String>,
-    /// Write where every vertex and face of the result came from, as JSON
-    #[arg(long, hide_short_help = true, value_name = "FILE.json")]
-    pub origins: Option<PathBuf>,
 }
 
 #[derive(Args)]

@@ -10,20 +10,23 @@
 //! | `args.rs`, `shared_args.rs`, `length.rs` | what can be typed; what several verbs share of it |
 //! | `options.rs` | options of operations: the files they name, what is wrong with them |
 //! | `drawings.rs` | what the stages of a blend draw |
+//! | `evaluation.rs` | documents read, and told about |
 //! | `failure.rs` | exit codes |
 //! | `session.rs` | one command: reading, progress, messages, writing |
 //! | `text_file.rs` | files of curves, clusters, profiles and the like |
 //! | `output.rs` | files that appear all at once or not at all |
 //! | `picture.rs` | still pictures |
 //! | `progress.rs` | bars and Ctrl-C |
-//! | `job_line.rs`, `job.rs` | lines of a jobs file; one document as a job |
+//! | `job_line.rs`, `job.rs` | lines of a jobs file; one document without a session |
 //! | `batch/` | many jobs in worker processes |
 //! | `page/` | the page that sums them up |
+//! | `watched.rs` | a job done again after every save |
 //! | `verbs/` | one file per verb |
 
 mod args;
 mod batch;
 mod drawings;
+mod evaluation;
 mod failure;
 mod job;
 pub mod job_line;
@@ -37,6 +40,13 @@ mod session;
 mod shared_args;
 mod text_file;
 mod verbs;
+mod watched;
+
+/// The same by the name that other doors know.
+#[allow(unused_imports, reason = "for the batch door")]
+pub(crate) mod document {
+    pub(crate) use crate::job::{JobResult, job};
+}
 
 use args::{Cli, Verb, with_bare_weld};
 use clap::FromArgMatches;
@@ -78,6 +88,7 @@ fn dispatch(session: &Session, verb: Verb) -> Result<(), Failure> {
         Verb::Sharpen(args) => verbs::sharpen::run(session, &args),
         Verb::Compose(args) => verbs::compose::run(session, &args),
         Verb::Remesh(args) => verbs::remesh::run(session, args),
+        Verb::Pose(args) => verbs::pose::run(session, args),
         Verb::Cut(args) => verbs::cut::run(session, &args),
         Verb::Run(args) => verbs::run::run(session, &args),
         Verb::Batch(args) => verbs::batch::run(session, &args),

@@ -3,10 +3,13 @@
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::shared_args::Source;
+use fusion::document::Sources;
 use fusion::mesh_core::TriMesh;
 use fusion::operation::{Files, OptionError};
+use mesh_io::Model;
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
 /// An option with a value that it cannot have.
 pub fn wrong(error: &OptionError) -> Failure {
@@ -41,15 +44,19 @@ impl<'a> Read<'a> {
     }
 }
 
+impl Sources for Read<'_> {
+    fn model(&mut self, path: &Path) -> Result<Arc<Model>, String> {
+        let read = self.session.read(&self.folder.join(path), &Source { from: None });
+        read.map(Arc::new).map_err(|e| e.to_string())
+    }
+}
+
 impl Files for Read<'_> {
     fn text(&mut self, path: &Path) -> Result<String, String> {
         fs::read_to_string(self.folder.join(path)).map_err(|e| format!("{}: {e}", path.display()))
     }
 
     fn mesh(&mut self, path: &Path) -> Result<TriMesh, String> {
-        self.session
-            .read(&self.folder.join(path), &Source { from: None })
-            .map(|model| model.mesh)
-            .map_err(|e| e.to_string())
+        self.model(path).map(|model| model.mesh.clone())
     }
 }

@@ -6,7 +6,7 @@ use crate::progress::Progress;
 use crate::shared_args::{Common, Source, Target};
 use fusion::mesh_core::{Bounds, Origins, Watch, bounds};
 use fusion::{Counts, Report, Stage};
-use mesh_io::{Format, Model};
+use mesh_io::{AtomicFiles, Format, Model};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::io::{Read, Write};
@@ -178,6 +178,46 @@ impl Session {
         outputs.commit_after(|| Ok(())).map(|()| self.tell_stages(report))
     }
 
+    /// Writes several meshes and further files, and a report of all, made by `told` from one with the time of reading; all or none.
+    pub fn write_several(
+        &self,
+        meshes: &[(&Destination, &Model)],
+        files: Vec<(PathBuf, Vec<u8>)>,
+        report: &Report,
+        told: impl FnOnce(&Report) -> String,
+    ) -> Result<(), Failure> {
+        self.watch().step("write", 0.0).map_err(|_| Failure::cancelled())?;
+        self.check_strict(report)?;
+        let report = &self.with_reading(report);
+        let mut outputs = Outputs::default();
+        for (path, bytes) in files {
+            outputs.add(path, bytes);
+        }
+        if let Some(path) = &self.common.report {
+            outputs.add(path, told(report).into_bytes());
+        }
+        let written = outputs.commit_after(|| {
+            let mut staged = AtomicFiles::default();
+            for (target, model) in meshes {
+                match &target.place {
+                    Some(path) => drop(mesh_io::stage_as(model, path, target.format, &mut staged).map_err(unwritable)?),
+                    None => output::stream(&mesh_io::to_bytes(model, target.format).map_err(unwritable)?)?,
+                }
+            }
+            staged.commit().map(drop).map_err(unwritable)
+        });
+        written.map(|()| self.tell_stages(report))
+    }
+
+    /// Tells the user what was done, unless asked to be quiet.
+    pub fn tell(&self, text: &str) {
+        if !self.common.quiet {
+            self.progress.suspend(|| {
+                let _ = writeln!(std::io::stderr(), "{text}");
+            });
+        }
+    }
+
     /// The report with the time of reading as its first stage.
     fn with_reading(&self, report: &Report) -> Report {
         let mut report = report.clone();
@@ -282,6 +322,13 @@ impl Destination {
     }
 }
 
+impl Destination {
+    /// Its file, or `-`.
+    pub fn shown(&self) -> PathBuf {
+        self.place.clone().unwrap_or_else(|| "-".into())
+    }
+}
+
 /// Whether a path stands for standard input or output.
 pub fn is_stream(path: &Path) -> bool {
     path.as_os_str() == "-"
@@ -311,7 +358,7 @@ fn read_model(path: &Path, from: Option<Format>) -> Result<Model, Failure> {
 }
 
 /// A model that the format cannot hold is the input's fault, not the disk's.
-fn unwritable(error: mesh_io::Error) -> Failure {
+pub fn unwritable(error: mesh_io::Error) -> Failure {
     match error {
         mesh_io::Error::Unrepresentable { .. } => Failure::impossible(error),
         _ => Failure::unwritable(error),

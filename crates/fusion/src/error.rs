@@ -1,6 +1,6 @@
 //! Why a pipeline gives no result.
 
-use crate::{Invalid, blend, choice, compose, cut, operation, recipe, sharpen};
+use crate::{Invalid, blend, choice, compose, cut, document, operation, sharpen};
 use glam::DVec3;
 use mesh_core::{Cancelled, NotManifold};
 use tri_intersect::EmbedError;
@@ -66,10 +66,10 @@ pub enum Error {
     /// The surface could not be remeshed.
     #[error(transparent)]
     Remesh(#[from] remesh::Error),
-    /// A recipe asks for what is not there.
+    /// A document asks for what is not there.
     #[error(transparent)]
-    Recipe(#[from] recipe::Error),
-    /// A step of a recipe failed.
+    Document(#[from] document::Error),
+    /// A step of a document failed.
     #[error("{name}: {source}")]
     Step {
         /// The step and what it works on.
@@ -131,7 +131,7 @@ impl Error {
             | Self::Blend(_)
             | Self::TooFew(_)
             | Self::Extent { .. }
-            | Self::Recipe(_)
+            | Self::Document(_)
             | Self::Cancelled(_) => None,
         }
     }

@@ -63,7 +63,8 @@
 //! | `cut/` | cuts by planes and closed paths |
 //! | `cluster/` | polyhedra rounded cluster by cluster |
 //! | `detail.rs` | geometry detail from region to region |
-//! | `recipe/` | whole models as TOML files |
+//! | `document/` | whole models as TOML text, evaluated step by step |
+//! | `pose/` | models moved |
 //! | `extent.rs`, `outcome.rs`, `validity.rs`, `error.rs` | how every pipeline begins and ends |
 //! | `remeshing.rs`, `region.rs` | remeshing of a surface or a region of it; regions |
 //! | `repair.rs` | welding, orientation, taking apart |
@@ -83,6 +84,7 @@ pub mod compose;
 pub mod cut;
 pub mod detail;
 mod diagnostic;
+pub mod document;
 mod drawings;
 mod error;
 mod extent;
@@ -94,8 +96,8 @@ mod origins_json;
 mod outcome;
 mod palette;
 mod picks;
+mod pose;
 mod profile_file;
-pub mod recipe;
 mod region;
 pub mod remeshing;
 mod repair;
@@ -110,6 +112,7 @@ pub use choice::Choice;
 pub use cut::cut;
 pub use detail_transfer;
 pub use diagnostic::{Code, Diagnostic, Severity};
+pub use document::Document;
 pub use drawings::drawings_to_files;
 pub use error::Error;
 pub use info::{Defect, Info, Loop};
@@ -122,7 +125,6 @@ pub use palette::palette_index;
 pub use picks::{Picked, picked_from_text};
 pub use profile_file::{ProfileFileError, profile_from_text};
 pub use profile_nurbs::Profile;
-pub use recipe::Recipe;
 pub use region::Region;
 pub use remeshing::remesh;
 pub use render;

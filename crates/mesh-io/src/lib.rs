@@ -56,4 +56,4 @@ pub use model::{Groups, Material, Materials, Model, Note, Polygons, Texture, Tex
 pub use obj::lines_to_obj;
 pub use read::{read, read_as, read_stream};
 pub use weld::{Welded, weld_exact, weld_within};
-pub use write::{Written, as_written, to_bytes, write, write_as};
+pub use write::{Written, as_written, stage_as, to_bytes, write, write_as};

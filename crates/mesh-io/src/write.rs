@@ -41,11 +41,24 @@ pub fn write(model: &Model, path: &Path) -> Result<Written, Error> {
 /// # Errors
 /// As for [`write()`].
 pub fn write_as(model: &Model, path: &Path, format: Format) -> Result<Written, Error> {
+    let mut staged = AtomicFiles::default();
+    let notes = stage_as(model, path, format, &mut staged)?;
+    let (mut files, bytes) = staged.commit()?;
+    if let Some(last) = files.last_mut() {
+        path.clone_into(last);
+    }
+    Ok(Written { files, bytes, notes })
+}
+
+/// Adds a mesh file and its side files, which go first, to files that appear together. Gives what the format could not hold.
+///
+/// # Errors
+/// As for [`write()`].
+pub fn stage_as(model: &Model, path: &Path, format: Format, staged: &mut AtomicFiles) -> Result<Vec<Note>, Error> {
     // A link is written through, not replaced.
     let real = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let encoded = encode(model, format, Some(&Target::of(path)))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut staged = AtomicFiles::default();
     for side in &encoded.sides {
         let target = folder.join(&side.name);
         match &side.content {
@@ -55,11 +68,7 @@ pub fn write_as(model: &Model, path: &Path, format: Format) -> Result<Written, E
         }
     }
     staged.add(&real, |f| encoded.body.iter().try_for_each(|piece| f.write_all(piece)))?;
-    let (mut files, bytes) = staged.commit()?;
-    if let Some(last) = files.last_mut() {
-        path.clone_into(last);
-    }
-    Ok(Written { files, bytes, notes: encoded.notes.resolve(&[]) })
+    Ok(encoded.notes.resolve(&[]))
 }
 
 /// The file that [`write()`] would make, as bytes, without side files: OBJ names materials that no library describes,

@@ -11,7 +11,7 @@
 //! | `compositions.rs` | random compositions of open pieces |
 //! | `lewiner.rs` | marching cubes on random fields |
 //! | `measures.rs` | normals, curvature, distances, booleans beside libigl's |
-//! | `recipes.rs` | recipes replayed |
+//! | `documents.rs` | documents evaluated |
 //! | `join.rs` | one job through the library |
 //! | `pairs.rs`, `pose.rs` | pairs of real models in random poses |
 //! | `nasty.rs` | broken files through the command line |
@@ -24,6 +24,7 @@ mod cad;
 mod case;
 pub mod cluster;
 mod compositions;
+mod documents;
 mod golden;
 mod hashes;
 mod join;
@@ -33,7 +34,6 @@ mod nasty;
 mod pairs;
 mod parts;
 mod pose;
-mod recipes;
 mod reference;
 mod threads;
 
@@ -87,7 +87,7 @@ pub fn run(options: &Options) -> Result<(), Fault> {
     let against = options.against.as_deref().map(Against::new).transpose()?;
     let mut threads = Threads::new(against)?;
     let mut faults = cluster::run(options.bless, &mut reference, &mut threads)?;
-    faults += recipes::run(options.bless, &mut reference, &mut threads)?;
+    faults += documents::run(options.bless, &mut reference, &mut threads)?;
     faults += cases(options.bless, &mut reference, &mut threads)?;
     faults += hashes::run(&threads.finish()?, options.bless)?;
     if options.reference {

@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 /// What is done with every file, IN, and how many seconds it may take.
-const JOBS: [(&str, u64); 16] = [
+const JOBS: [(&str, u64); 17] = [
     ("info IN", 10),
     ("convert IN -o out.ply", 10),
     ("convert IN -o out.ply --weld 0.01% --orient --split", 10),
@@ -17,6 +17,7 @@ const JOBS: [(&str, u64); 16] = [
     ("render IN -o out.png --size 64", 10),
     ("union IN block.off -o out.ply", 10),
     ("difference block.off IN -o out.ply --radius 1%", 30),
+    ("pose IN -o out.ply --translate 0,0,1 --rotate 1,2,3,40", 10),
     ("cut IN -o out.ply --plane 0,0,0,1,0.2,0.1", 10),
     ("sharpen IN -o out.ply --near 0,0,0", 10),
     ("remesh IN -o out.ply --edge-length 4%", 30),
@@ -44,7 +45,7 @@ pub fn run(folder: &Path, quick: bool) -> Result<usize, Fault> {
     let (mut faults, mut accepted, mut runs) = (0, 0, 0);
     for (number, file) in files.iter().enumerate() {
         let file = file.canonicalize()?;
-        fs::write(bench.path().join("job.toml"), recipe(&file)?)?;
+        fs::write(bench.path().join("job.toml"), document(&file)?)?;
         let before = listed(bench.path())?;
         let jobs = JOBS.into_iter().zip(&mut slowest).filter(|((_, seconds), _)| !quick || *seconds <= SHORT);
         for ((line, seconds), slowest) in jobs.skip(number % stride).step_by(stride) {
@@ -128,13 +129,13 @@ fn watch(command: &mut Command, patience: Duration) -> Result<Option<i32>, Fault
     }
 }
 
-/// A recipe that joins the file to the block.
-fn recipe(file: &Path) -> Result<String, Fault> {
-    let mut text = String::from("version = 1\noutput = \"out.ply\"\n");
+/// A document that joins the file to the block.
+fn document(file: &Path) -> Result<String, Fault> {
+    let mut text = String::from("version = 2\n");
     for (name, mesh) in [("file", file), ("block", Path::new("block.off"))] {
         writeln!(text, "[[part]]\nname = {name:?}\nmesh = {:?}", mesh.to_string_lossy())?;
     }
-    text.push_str("[[boolean]]\noperation = \"union\"\n");
+    text.push_str("[[step]]\ndo = \"union\"\n[[output]]\nfile = \"out.ply\"\n");
     Ok(text)
 }
 

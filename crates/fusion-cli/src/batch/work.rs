@@ -3,7 +3,7 @@
 use crate::batch::folders::list;
 use crate::batch::outcome::{Outcome, State, error};
 use crate::failure::Failure;
-use crate::job::job;
+use crate::job::{job, job_of_text};
 use crate::job_line::{Document, Job};
 use fusion::mesh_core::Watch;
 use serde::{Deserialize, Serialize};
@@ -51,7 +51,7 @@ pub fn serve(cache: Option<&Path>, watch: &Watch) -> Result<(), Failure> {
 fn answer(request: &Request, cache: Option<&Path>, watch: &Watch) -> Outcome {
     let start = Instant::now();
     let mut inputs = vec![];
-    let result = replay(request, cache, watch, &mut inputs);
+    let result = evaluate(request, cache, watch, &mut inputs);
     let outputs = if result.is_ok() { list(&request.folder) } else { Ok(vec![]) };
     let milliseconds = start.elapsed().as_micros() as f64 / 1e3;
     let job = &request.job;
@@ -88,43 +88,29 @@ fn code_name(code: u8) -> &'static str {
     }
 }
 
-/// Replays the document, and gives its report; `inputs` gets the parts' files.
-fn replay(request: &Request, cache: Option<&Path>, watch: &Watch, inputs: &mut Vec<String>) -> Result<Value, Failure> {
-    let sets = request.job.sets();
-    let run = |document: &Path| job(document, &sets, Some(&request.folder), cache, watch).map(|result| result.report);
-    match &request.job.document {
+/// Evaluates the document, and gives its report; `inputs` gets the parts' files.
+fn evaluate(
+    request: &Request,
+    cache: Option<&Path>,
+    watch: &Watch,
+    inputs: &mut Vec<String>,
+) -> Result<Value, Failure> {
+    let (sets, folder) = (request.job.sets(), Some(request.folder.as_path()));
+    let text = match &request.job.document {
         Document::File(path) => {
             let path = request.base.join(path);
             if let Ok(text) = std::fs::read_to_string(&path) {
                 *inputs = parts(&text, path.parent().unwrap_or(Path::new("")));
             }
-            run(&path)
+            return job(&path, &sets, folder, cache, watch).map(|result| result.report);
         }
-        Document::Text(text) => inline(text, request, inputs, run),
+        Document::Text(text) => text.clone(),
         Document::Object(table) => {
-            let text = toml::to_string(table)
-                .map_err(|e| Failure::unreadable(format!("the document is no table of a document: {e}")))?;
-            inline(&text, request, inputs, run)
+            toml::to_string(table).map_err(|e| Failure::unreadable(format!("the document is no table: {e}")))?
         }
-    }
-}
-
-/// A document without a file.
-fn inline<T>(
-    text: &str,
-    request: &Request,
-    inputs: &mut Vec<String>,
-    run: impl FnOnce(&Path) -> Result<T, Failure>,
-) -> Result<T, Failure> {
-    *inputs = parts(text, &request.base);
-    let folder = if request.base.as_os_str().is_empty() { Path::new(".") } else { &request.base };
-    let mut file = tempfile::Builder::new()
-        .prefix(".fusion-")
-        .suffix(".toml")
-        .tempfile_in(folder)
-        .map_err(|e| Failure::unwritable(format!("cannot write a document into {}: {e}", folder.display())))?;
-    file.write_all(text.as_bytes()).map_err(|e| Failure::unwritable(format!("cannot write a document: {e}")))?;
-    run(file.path())
+    };
+    *inputs = parts(&text, &request.base);
+    job_of_text(&text, &request.base.join("(document)"), &sets, folder, cache, watch).map(|result| result.report)
 }
 
 /// The meshes that a document names as its parts.

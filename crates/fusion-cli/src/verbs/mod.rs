@@ -14,6 +14,7 @@ pub mod features;
 pub mod grid;
 pub mod info;
 pub mod man;
+pub mod pose;
 pub mod remesh;
 pub mod render;
 pub mod run;

@@ -8,15 +8,15 @@ use std::fs;
 /// A document that joins two boxes, the second one posed.
 pub fn document(dx: f64) -> String {
     format!(
-        "version = 1\noutput = \"out.off\"\n[[part]]\nname = \"a\"\nmesh = \"a.off\"\n\
-         [[part]]\nname = \"b\"\nmesh = \"b.off\"\ntranslate = [{dx:?}, 0, 0]\n[[boolean]]\noperation = \"union\"\n"
+        "version = 2\n[[part]]\nname = \"a\"\nmesh = \"a.off\"\n[[part]]\nname = \"b\"\nmesh = \"b.off\"\n\
+         translate = [{dx:?}, 0, 0]\n[[step]]\ndo = \"union\"\nof = [\"a\", \"b\"]\n[[output]]\nof = \"a\"\nfile = \"out.off\"\n"
     )
 }
 
 /// A document that cuts where there is nothing.
 pub fn impossible() -> String {
-    "version = 1\noutput = \"out.off\"\n[[part]]\nname = \"a\"\nmesh = \"a.off\"\n\
-     [[part.cut]]\nplane = { point = [0, 0, 7], normal = [0, 0, 1] }\n"
+    "version = 2\n[[part]]\nname = \"a\"\nmesh = \"a.off\"\n[[step]]\ndo = \"cut\"\nof = \"a\"\n\
+     plane = { point = [0, 0, 7], normal = [0, 0, 1] }\n[[output]]\nof = \"a\"\nfile = \"out.off\"\n"
         .into()
 }
 

@@ -18,7 +18,7 @@ struct File {
     cluster: Vec<Entry>,
 }
 
-/// One cluster, as files and recipes name it.
+/// One cluster, as files and documents name it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Entry {
@@ -35,7 +35,7 @@ pub struct Entry {
     pub moves: Vec<MoveEntry>,
 }
 
-/// A degree, as files and recipes write it.
+/// A degree, as files and documents write it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "a degree is a whole number, or two for clusters of four sides")]
 #[schemars(title = "whole number, or two")]

@@ -25,7 +25,7 @@ impl<T> Linked<T> {
     ///
     /// # Errors
     /// [`OptionError`] for one that is still in its file.
-    pub(super) fn value(&self, option: &'static str) -> Result<&T, OptionError> {
+    pub(crate) fn value(&self, option: &'static str) -> Result<&T, OptionError> {
         match self {
             Self::Here(value) => Ok(value),
             Self::File(path) => Err(OptionError::new(option, format!("{} has not been read", path.display()))),

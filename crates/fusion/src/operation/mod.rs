@@ -13,9 +13,9 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `blend.rs`, `boolean.rs`, `cluster.rs`, `compose.rs`, `cut.rs`, `detail.rs`, `remesh.rs`, `sharpen.rs` | the operations |
+//! | `blend.rs`, `boolean.rs`, `cluster.rs`, `compose.rs`, `cut.rs`, `detail.rs`, `pose.rs`, `remesh.rs`, `sharpen.rs` | the operations |
 //! | `rolling.rs` | options that the two share |
-//! | `length.rs`, `place.rs`, `section.rs`, `region.rs`, `region_of.rs`, `silhouette.rs`, `smoothing.rs`, `linked.rs`, `words.rs`, `precision.rs` | what options take |
+//! | `length.rs`, `place.rs`, `primitive.rs`, `section.rs`, `region.rs`, `region_of.rs`, `silhouette.rs`, `smoothing.rs`, `linked.rs`, `words.rs`, `precision.rs` | what options take |
 //! | `option_error.rs` | what is wrong with an option |
 //! | `options.rs`, `schema.rs` | what operations have in common; their JSON schema |
 //! | `define.rs` | the macros behind the structs |
@@ -32,7 +32,9 @@ mod linked;
 mod option_error;
 mod options;
 mod place;
+mod pose;
 mod precision;
+mod primitive;
 mod region;
 mod region_of;
 mod remesh;
@@ -55,7 +57,9 @@ pub use linked::{Files, Linked, Solid};
 pub use option_error::OptionError;
 pub use options::Options;
 pub use place::{Near, RadiusAt, direction, point};
+pub use pose::Pose;
 pub use precision::Precision;
+pub use primitive::{On, Primitive, PrimitiveShape, Radii, Rotation, Snap};
 pub use region::RegionArg;
 pub use region_of::{Curve, RegionOf};
 pub use remesh::Remesh;

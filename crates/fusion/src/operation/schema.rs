@@ -2,7 +2,7 @@
 
 use super::option_error::short;
 use super::options::Options;
-use super::{Blend, Boolean, Cluster, Compose, Cut, Detail, Remesh, Sharpen};
+use super::{Blend, Boolean, Cluster, Compose, Cut, Detail, Pose, Primitive, Remesh, Sharpen};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
@@ -23,8 +23,10 @@ pub fn schema() -> Value {
     add(Compose::NAME, generator.subschema_for::<Compose>());
     add(Cut::NAME, generator.subschema_for::<Cut>());
     add(Detail::NAME, generator.subschema_for::<Detail>());
+    add(Pose::NAME, generator.subschema_for::<Pose>());
     add(Remesh::NAME, generator.subschema_for::<Remesh>());
     add(Sharpen::NAME, generator.subschema_for::<Sharpen>());
+    generator.subschema_for::<Primitive>();
     let mut definitions = generator.take_definitions(true);
     for definition in definitions.values_mut() {
         // Examples are for readers of the library.

@@ -1,9 +1,10 @@
-//! Geometry detail in recipes.
+//! Geometry detail in documents.
 
-use fusion::Recipe;
+use fusion::document::{Cache, Document, Given, Precisions};
 use fusion::mesh_core::{FaceOrigin, TriMesh, Watch, shapes};
 use glam::DVec3;
-use mesh_io::{Format, Model};
+use mesh_io::Model;
+use std::sync::Arc;
 
 /// A tube open at both ends, with bumps.
 fn bumpy() -> Model {
@@ -17,8 +18,7 @@ fn bumpy() -> Model {
 }
 
 const PARTS: &str = "
-version = 1
-output = \"out.off\"
+version = 2
 [[part]]
 name = \"low\"
 mesh = \"tube.off\"
@@ -26,15 +26,21 @@ mesh = \"tube.off\"
 name = \"high\"
 mesh = \"tube.off\"
 translate = [0, 0, 4.2]
-[[compose]]
-loops = [\"low:TOP\", \"high:BOTTOM\"]
+[[step]]
+do = \"compose\"
+of = [\"low:TOP\", \"high:BOTTOM\"]
+as = \"tubes\"
 ";
 
 fn run(detail: &str) -> Result<fusion::Outcome, fusion::Error> {
     let tube = bumpy();
     let one = |top: usize| {
         let text = PARTS.replace("TOP", &top.to_string()).replace("BOTTOM", &(1 - top).to_string()) + detail;
-        Recipe::parse(&text)?.run(&[tube.clone(), tube.clone()], Format::Off, &Watch::default())
+        let mut given = Given::default();
+        given.0.insert("tube.off".into(), Arc::new(tube.clone()));
+        let document = Document::parse(&format!("{text}\n[[output]]\nof = \"tubes\"\nfile = \"out.off\""))?;
+        let made = document.evaluate_from(&mut given, &Cache::default(), Precisions::ByFile, &Watch::default());
+        made.map(|mut made| made.outputs.remove(0).outcome)
     };
     // The upper end of the lower tube, whichever loop that is.
     let loops = fusion::Info::of(&tube.mesh, &Watch::default()).unwrap().boundary_loops.unwrap();
@@ -45,7 +51,7 @@ fn run(detail: &str) -> Result<fusion::Outcome, fusion::Error> {
 fn a_transition_gets_the_detail_of_a_part() {
     let smooth = run("").unwrap();
     let rough =
-        run("[[detail]]\nsource = { part = \"low\", near = [1, 0, 1.5], radius = 3.0 }\nwavelength = 1.5").unwrap();
+        run("[[step]]\ndo = \"detail\"\nof = \"tubes\"\nsource = { part = \"low\", near = [1, 0, 1.5], radius = 3.0 }\nwavelength = 1.5").unwrap();
     let figure = |name: &str| rough.report.figures[name];
     assert!((figure("roughness") / figure("roughness_source") - 1.0).abs() < 0.2, "{:?}", rough.report.figures);
     assert!(figure("roughness_before") < 0.3 * figure("roughness_source"));
@@ -63,23 +69,24 @@ fn a_transition_gets_the_detail_of_a_part() {
 fn what_is_wrong_with_a_detail_is_named() {
     for (table, says) in [
         ("source = { near = [0, 0, 0] }", "near and radius"),
-        ("source = [{ part = \"middle\", group = \"a\" }]", "no part `middle`"),
+        ("source = [{ part = \"middle\", group = \"a\" }]", "no shape `middle`"),
         ("source = { origin = \"blend\" }\nmode = \"structured\"", "along"),
         ("source = { origin = \"blend\" }\nintensity = nan", "number from"),
         ("source = { origin = \"blend\" }\nwavelength = 0.0", "above 0"),
         ("mode = \"unstructured\"", "source"),
     ] {
-        let text = PARTS.replace("TOP", "0").replace("BOTTOM", "1") + "[[detail]]\n" + table;
-        let error = Recipe::parse(&text).unwrap_err();
-        assert!(error.message.contains(says), "{table}: {error}");
+        let text =
+            PARTS.replace("TOP", "0").replace("BOTTOM", "1") + "[[step]]\ndo = \"detail\"\nof = \"tubes\"\n" + table;
+        let error = Document::parse(&text).unwrap_err();
+        assert!(error.to_string().contains(says), "{table}: {error}");
     }
 }
 
-const LOW: &str = "[[detail]]\nsource = { part = \"low\", near = [1, 0, 1.5], radius = 3.0 }\nwavelength = 1.5\n";
+const LOW: &str = "[[step]]\ndo = \"detail\"\nof = \"tubes\"\nsource = { part = \"low\", near = [1, 0, 1.5], radius = 3.0 }\nwavelength = 1.5\n";
 
 /// Lengths, shares and names; the figure tells which was taken.
 #[test]
-fn fans_are_as_long_as_the_recipe_says() {
+fn fans_are_as_long_as_the_document_says() {
     let fan = |line: &str| run(&format!("{LOW}{line}")).unwrap().report.figures["fan"];
     assert_eq!(fan("fan = 0.25"), 0.25);
     // One and a half of the longest edges, of 0.087; a hundredth of the diagonal is less than that, and so is not taken.
@@ -93,7 +100,7 @@ fn fans_are_as_long_as_the_recipe_says() {
 
 /// The index finds what looking at everything finds, so the meshes are the same to the bit.
 #[test]
-fn both_searches_of_a_recipe_make_the_same_mesh() {
+fn both_searches_make_the_same_mesh() {
     let [indexed, exhaustive] =
         ["indexed", "exhaustive"].map(|name| run(&format!("{LOW}search = \"{name}\"")).unwrap());
     assert_eq!(indexed.model.mesh, exhaustive.model.mesh);

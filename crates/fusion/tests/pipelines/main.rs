@@ -6,6 +6,7 @@ mod cancelled;
 mod compose;
 mod corners;
 mod details;
+mod documents;
 mod hidden;
 mod invariants;
 mod keep;

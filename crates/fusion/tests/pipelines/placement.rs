@@ -1,14 +1,20 @@
 //! Parts on primitives, and parts that snap to openings.
 
+use fusion::Error;
+use fusion::document::{Cache, Document, Given, Precisions};
 use fusion::mesh_core::{TriMesh, Watch, shapes, topology};
-use fusion::{Error, Recipe};
 use glam::DVec3;
-use mesh_io::{Format, Model};
+use std::sync::Arc;
 
 fn run(body: &str, parts: &[TriMesh]) -> Result<TriMesh, Error> {
-    let recipe = Recipe::parse(&format!("version = 1\noutput = \"out.off\"\n{body}"))?;
-    let models: Vec<Model> = parts.iter().cloned().map(Model::from).collect();
-    Ok(recipe.run(&models, Format::Off, &Watch::default())?.model.mesh)
+    let document = Document::parse(&format!("version = 2\n{body}"))?;
+    let mut given = Given::default();
+    for (name, mesh) in ["a.off", "b.off"].into_iter().zip(parts) {
+        given.0.insert(name.into(), Arc::new(mesh.clone().into()));
+    }
+    let made = document.evaluate_from(&mut given, &Cache::default(), Precisions::ByFile, &Watch::default())?;
+    assert_eq!(made.outputs.len(), 1, "all in one shape");
+    Ok(made.outputs[0].outcome.model.mesh.clone())
 }
 
 fn middle(mesh: &TriMesh) -> DVec3 {
@@ -55,14 +61,15 @@ fn riders_follow_their_primitive() {
 fn primitives_stand_on_openings_and_on_each_other() {
     let made = |lift: f64| {
         let text = format!(
-            "[[part]]\nname = \"rider\"\nmesh = \"a.off\"\non = {{ primitive = \"ball\", at = [0, 1] }}\n\
-             [[part]]\nname = \"cup\"\nmesh = \"b.off\"\ntranslate = [0, 0, {lift:?}]\n\
-             [[part.cut]]\nplane = {{ point = [0, 0, 0.5], normal = [0, 0, 1] }}\n\
+            "[[part]]\nname = \"rider\"\nmesh = \"a.off\"\n\
+             [[part]]\nname = \"cup\"\nmesh = \"b.off\"\n\
+             [[step]]\ndo = \"cut\"\nof = \"cup\"\nplane = {{ point = [0, 0, 0.5], normal = [0, 0, 1] }}\n\
+             [[step]]\ndo = \"pose\"\nof = \"cup\"\ntranslate = [0, 0, {lift:?}]\n\
+             [[step]]\ndo = \"pose\"\nof = \"rider\"\non = {{ primitive = \"ball\", at = [0, 1] }}\n\
              [primitive.neck]\nshape = \"cone\"\nloop = \"cup:0\"\nheight = 2.0\n\
              [primitive.ball]\nshape = \"sphere\"\nradius = 0.5\non = {{ primitive = \"neck\", at = [0, 2] }}\nbase = [0, 0, 0.5]\n\
-             [[compose]]\nloops = [\"cup\"]\n[[boolean]]\nparts = [\"rider\", \"cup\"]\n"
+             [[step]]\ndo = \"compose\"\nof = [\"cup\"]\n[[step]]\ndo = \"union\"\nof = [\"rider\", \"cup\"]\n"
         );
-        let text = format!("steps = [\"cut\", \"pose\", \"compose\", \"boolean\"]\n{text}");
         run(&text, &[shapes::icosphere(3.0, 2), shapes::icosphere(1.0, 3)]).unwrap()
     };
     // The rider's middle is at 0.5 (the cut), plus the cone, plus the ball; it is large enough to swallow the cup.
@@ -78,12 +85,13 @@ fn primitives_stand_on_openings_and_on_each_other() {
 fn openings_snap_together() {
     let half = |name: &str, extra: &str| {
         format!(
-            "[[part]]\nname = \"{name}\"\nmesh = \"a.off\"\n{extra}\n[[part.cut]]\nplane = {{ point = [0, 0, 0.1], normal = [0, 0, 1] }}\n"
+            "[[part]]\nname = \"{name}\"\nmesh = \"a.off\"\n[[step]]\ndo = \"cut\"\nof = \"{name}\"\nplane = {{ point = [0, 0, 0.1], normal = [0, 0, 1] }}\n\
+             [[step]]\ndo = \"pose\"\nof = \"{name}\"\n{extra}\n"
         )
     };
     let loose =
         "translate = [3, -2, 1]\nrotate = { axis = [1, 2, 3], angle = 77 }\nsnap = { to = \"low:0\", gap = 0.4 }";
-    let text = [half("low", ""), half("high", loose), "[[compose]]\n".into()].concat();
+    let text = [half("low", ""), half("high", loose), "[[step]]\ndo = \"compose\"\n".into()].concat();
     let ball = shapes::icosphere(1.0, 3);
     let made = run(&text, &[ball.clone(), ball]).unwrap();
     let counts = topology(&fusion::mesh_core::Connected::new(&made).unwrap());
@@ -100,20 +108,20 @@ fn places_that_cannot_be_are_named() {
     let part = |extra: &str| format!("[[part]]\nname = \"a\"\nmesh = \"a.off\"\n{extra}\n");
     let ball = "[primitive.p]\nshape = \"sphere\"\nradius = 1.0\n";
     for (text, says) in [
-        (part("on = { primitive = \"q\", at = [0, 0] }") + ball, "no [primitive.q], only p"),
+        (part("on = { primitive = \"q\", at = [0, 0] }") + ball, "no [primitive.q]"),
         (part("") + "[primitive.p]\nshape = \"ball\"\nradius = 1.0\n", "box, cylinder, sphere or cone"),
         (part("") + "[primitive.p]\nshape = \"cone\"\nradius = [1.0, -1.0]\nheight = 1.0\n", "radius"),
         (part("") + "[primitive.p]\nshape = \"box\"\n", "size"),
-        (part("") + "[primitive.p]\nshape = \"sphere\"\nradius = 1.0\nloop = \"b:0\"\n", "opening of a part"),
-        (part("snap = { to = \"b:0\" }"), "opening of a part"),
-        (part("snap = { to = \"a:0\" }"), "no loop 0"),
+        (part("") + "[primitive.p]\nshape = \"sphere\"\nradius = 1.0\nloop = \"b:0\"\n", "no shape `b`"),
+        (part("snap = { to = \"b:0\" }"), "no shape `b`"),
+        (part("snap = { to = \"a:0\" }"), "circle"),
         (
             part("on = { primitive = \"p\", at = [0, 0] }")
                 + "[primitive.p]\nshape = \"sphere\"\nradius = 1.0\non = { primitive = \"p\", at = [0, 0] }\n",
-            "stands on itself",
+            "circle",
         ),
     ] {
         let error = run(&text, &[shapes::cuboid(DVec3::ONE)]).unwrap_err();
-        assert!(matches!(&error, Error::Recipe(e) if e.to_string().contains(says)), "{says}: {error}");
+        assert!(matches!(&error, Error::Document(e) if e.to_string().contains(says)), "{says}: {error}");
     }
 }

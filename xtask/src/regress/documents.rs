@@ -1,4 +1,4 @@
-//! Recipes replayed, against approved records.
+//! Documents evaluated, against approved records.
 //!
 //! A composed surface comes out of a large linear solve, whose last bits differ between processors; so records hold topology exactly, and
 //! measures to a tolerance.
@@ -6,9 +6,9 @@
 use super::reference::Reference;
 use super::threads::Threads;
 use crate::{Fault, root};
-use fusion::Recipe;
+use fusion::Document;
+use fusion::document::{Cache, Evaluation, Precisions};
 use mesh_core::{Connected, Stopwatch, Watch, area, topology, validate, volume};
-use mesh_io::Format;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 /// Measures may differ by this share.
 const TOLERANCE: f64 = 1e-3;
 
-/// What a recipe made.
+/// What a document made.
 #[derive(Debug, Serialize, Deserialize)]
 struct Record {
     components: usize,
@@ -42,7 +42,7 @@ impl Record {
     }
 }
 
-/// Replays every recipe of fixtures/recipes and returns how many faults there were.
+/// Evaluates every document of fixtures/recipes and returns how many faults there were.
 pub fn run(bless: bool, reference: &mut Option<Reference>, threads: &mut Threads) -> Result<usize, Fault> {
     let folder = root().join("fixtures/recipes");
     let mut paths: Vec<PathBuf> = fs::read_dir(&folder)?.flatten().map(|e| e.path()).collect();
@@ -56,7 +56,7 @@ pub fn run(bless: bool, reference: &mut Option<Reference>, threads: &mut Threads
             faults += 1;
         }
     }
-    println!("regress: {} recipes, {faults} faults", paths.len());
+    println!("regress: {} documents, {faults} faults", paths.len());
     Ok(faults)
 }
 
@@ -67,14 +67,16 @@ fn replay(
     reference: &mut Option<Reference>,
     threads: &mut Threads,
 ) -> Result<Vec<String>, Fault> {
-    let recipe = Recipe::parse(&fs::read_to_string(path)?)?;
+    let document = Document::parse(&fs::read_to_string(path)?)?;
     let folder = path.parent().unwrap_or(path);
-    let parts = recipe.parts.iter().map(|p| mesh_io::read(&folder.join(&p.mesh))).collect::<Result<Vec<_>, _>>()?;
     let start = Stopwatch::start();
-    let job = || recipe.run(&parts, Format::Ply, &Watch::default());
-    let (made, differs) = threads.twice(name, job, |made| made.as_ref().ok().map(|m| &m.model.mesh));
+    // A cache of each run's own, or the second would do nothing.
+    let job = || document.evaluate(folder, &Cache::in_memory(0), Precisions::ByFile, &Watch::default());
+    let mesh = |made: &Result<Evaluation, _>| made.as_ref().ok()?.outputs.first().map(|o| &o.outcome.model.mesh);
+    let (made, differs) = threads.twice(name, job, mesh);
     let made = match made {
-        Ok(made) => made.model.mesh,
+        Ok(mut made) if made.outputs.len() == 1 => made.outputs.remove(0).outcome.model.mesh,
+        Ok(made) => return Ok(vec![format!("has {} outputs instead of one", made.outputs.len())]),
         Err(error) => return Ok(vec![error.to_string()]),
     };
     println!("regress: {name}: {} triangles twice in {:.2} s", made.faces.len(), start.elapsed().as_secs_f64());

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 /// A box, cylinder, sphere or truncated cone in its own coordinates. All but the sphere stand on the origin and rise along z.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Shape {
+pub(crate) enum Shape {
     /// Extents along x, y and z.
     Box(DVec3),
     /// Radii at the base and at the top, and the height. A cylinder where they are equal.
@@ -17,13 +17,13 @@ pub(super) enum Shape {
 
 /// A rigid motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Motion {
-    pub rotation: DQuat,
-    pub translation: DVec3,
+pub(crate) struct Motion {
+    pub(crate) rotation: DQuat,
+    pub(crate) translation: DVec3,
 }
 
 impl Motion {
-    pub(super) const IDENTITY: Self = Self { rotation: DQuat::IDENTITY, translation: DVec3::ZERO };
+    pub(crate) const IDENTITY: Self = Self { rotation: DQuat::IDENTITY, translation: DVec3::ZERO };
 
     /// From coordinates with the given unit axes x and z, z the leading one, at a point.
     fn to_axes(point: DVec3, x: DVec3, z: DVec3) -> Self {
@@ -32,16 +32,16 @@ impl Motion {
     }
 
     /// The shortest turn that takes z to `axis`, and then to a point.
-    pub(super) fn along(axis: DVec3, point: DVec3) -> Self {
+    pub(crate) fn along(axis: DVec3, point: DVec3) -> Self {
         Self { rotation: DQuat::from_rotation_arc(DVec3::Z, axis), translation: point }
     }
 
     /// This motion after another.
-    pub(super) fn after(self, first: Self) -> Self {
+    pub(crate) fn after(self, first: Self) -> Self {
         Self { rotation: self.rotation * first.rotation, translation: self.point(first.translation) }
     }
 
-    pub(super) fn point(self, p: DVec3) -> DVec3 {
+    pub(crate) fn point(self, p: DVec3) -> DVec3 {
         self.rotation * p + self.translation
     }
 }
@@ -51,7 +51,7 @@ impl Shape {
     ///
     /// u counts turns from the x axis, once round from 0 to 1, on a box by the length of its outline. v goes from 0 at the base to 1 at the top; on
     /// to 2 it goes over the top to its middle, and down to −1 over the base. On a sphere v goes from pole to pole.
-    pub(super) fn frame(self, u: f64, v: f64) -> Motion {
+    pub(crate) fn frame(self, u: f64, v: f64) -> Motion {
         let (sin, cos) = (TAU * u).sin_cos();
         let (radial, around) = (DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0));
         match self {
@@ -78,7 +78,7 @@ impl Shape {
     }
 
     /// The (u, v) whose place is nearest to a point, to within a step of a grid and some halvings of it.
-    pub(super) fn nearest(self, p: DVec3) -> (f64, f64) {
+    pub(crate) fn nearest(self, p: DVec3) -> (f64, f64) {
         const STEPS: i32 = 48;
         let (low, high) = if matches!(self, Self::Sphere(_)) { (0.0, 1.0) } else { (-1.0, 2.0) };
         let far = |(u, v): (f64, f64)| self.frame(u, v).translation.distance_squared(p);

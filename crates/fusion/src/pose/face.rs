@@ -10,7 +10,7 @@ const SAMPLES: usize = 96;
 const ROUNDS: usize = 60;
 
 /// The middle of a loop by length, and the unit normal of its area: for a boundary loop, with the part on its left, out of the opening.
-pub(super) fn opening_axis(points: &[DVec3]) -> Option<(DVec3, DVec3)> {
+pub(crate) fn opening_axis(points: &[DVec3]) -> Option<(DVec3, DVec3)> {
     let even = even(points, SAMPLES);
     let middle = even.iter().sum::<DVec3>() / even.len() as f64;
     let next = |i: usize| even[(i + 1) % even.len()] - middle;
@@ -20,7 +20,7 @@ pub(super) fn opening_axis(points: &[DVec3]) -> Option<(DVec3, DVec3)> {
 
 /// The motion that brings the loop `own` to face the loop `target`, `gap` in front of it: first axis to axis by the shortest turn, then to the
 /// least squares of soft correspondences. Lengths in model units; `None` for loops without area.
-pub(super) fn face_to_face(own: &[DVec3], target: &[DVec3], gap: f64) -> Option<Motion> {
+pub(crate) fn face_to_face(own: &[DVec3], target: &[DVec3], gap: f64) -> Option<Motion> {
     let ((from, axis), (to, facing)) = (opening_axis(own)?, opening_axis(target)?);
     let turn = DQuat::from_rotation_arc(axis, -facing);
     let place = to + gap * facing;

@@ -1,0 +1,103 @@
+//! Results kept: in memory up to a stated size, and in a folder where one is given.
+
+use super::entry::Entry;
+use super::key::Key;
+use super::store::Store;
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What steps have made, by all that it depends on, so that a step whose key is known is not taken again. Several threads may
+/// share one, and several processes one folder.
+#[derive(Debug)]
+pub struct Cache {
+    memory: Mutex<Memory>,
+    store: Option<Store>,
+}
+
+#[derive(Debug, Default)]
+struct Memory {
+    entries: HashMap<Key, Kept>,
+    /// Bytes in all, and the most.
+    size: usize,
+    most: usize,
+    /// Rises with every look.
+    clock: u64,
+}
+
+#[derive(Debug)]
+struct Kept {
+    entry: Arc<Entry>,
+    size: usize,
+    /// When it was last looked at.
+    at: u64,
+}
+
+/// Memory taken where nothing else is said.
+const MOST: usize = 1 << 30;
+
+impl Default for Cache {
+    /// A gigabyte of memory, and no folder.
+    fn default() -> Self {
+        Self::in_memory(MOST)
+    }
+}
+
+impl Cache {
+    /// At most so many bytes of memory, about; 0 keeps nothing.
+    pub fn in_memory(bytes: usize) -> Self {
+        Self { memory: Mutex::new(Memory { most: bytes, ..Memory::default() }), store: None }
+    }
+
+    /// The same, and a folder, which is made where there is none. Of its entries the oldest go once they take more bytes in all.
+    /// What cannot be written or read there is done again, without a word.
+    #[must_use]
+    pub fn with_folder(self, folder: impl Into<PathBuf>, bytes: u64) -> Self {
+        Self { store: Some(Store::new(folder.into(), bytes)), ..self }
+    }
+
+    /// What is known by a key.
+    pub(super) fn get(&self, key: &Key) -> Option<Arc<Entry>> {
+        if let Some(entry) = self.memory().get(key) {
+            return Some(entry);
+        }
+        let entry = Arc::new(Entry::from_bytes(&self.store.as_ref()?.read(key)?)?);
+        self.memory().put(*key, &entry);
+        Some(entry)
+    }
+
+    /// Keeps what a step has made.
+    pub(super) fn put(&self, key: Key, entry: &Arc<Entry>) {
+        self.memory().put(key, entry);
+        if let Some(store) = &self.store
+            && let Some(bytes) = entry.to_bytes()
+        {
+            store.write(&key, &bytes);
+        }
+    }
+
+    fn memory(&self) -> std::sync::MutexGuard<'_, Memory> {
+        self.memory.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Memory {
+    fn get(&mut self, key: &Key) -> Option<Arc<Entry>> {
+        self.clock += 1;
+        let kept = self.entries.get_mut(key)?;
+        kept.at = self.clock;
+        Some(Arc::clone(&kept.entry))
+    }
+
+    fn put(&mut self, key: Key, entry: &Arc<Entry>) {
+        self.clock += 1;
+        let (size, at) = (entry.size(), self.clock);
+        let old = self.entries.insert(key, Kept { entry: Arc::clone(entry), size, at });
+        self.size += size;
+        self.size -= old.map_or(0, |old| old.size);
+        while self.size > self.most {
+            let Some(oldest) = self.entries.iter().min_by_key(|(_, kept)| kept.at).map(|(key, _)| *key) else { break };
+            self.size -= self.entries.remove(&oldest).map_or(0, |kept| kept.size);
+        }
+    }
+}
