@@ -164,4 +164,35 @@ mod tests {
             assert!(fault.reason.contains(word), "{fault:?} lacks {word}");
         }
     }
+    /// The fuzz target of the same name, on few inputs.
+    #[test]
+    fn broken_lines_are_jobs_or_faults_of_lines_that_are_there() {
+        let text = "{\"id\": 7, \"document\": \"a\\nb\", \"parameters\": {\"r\": [1, \"2%\"]}}\n\n{\"id\": \"\u{e4}\", \"document\": {\"version\": 2}}";
+        let mut state = 1_u64;
+        let mut random = |below: usize| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as usize % below
+        };
+        let (mut read, mut refused) = (0, 0);
+        for _ in 0..20_000 {
+            let mut bytes = text.as_bytes().to_vec();
+            for _ in 0..=random(3) {
+                let (place, with) = (random(bytes.len()), b"{}[]\":,\\\n0e-\xff a"[random(15)]);
+                bytes[place] = with;
+            }
+            match parse(&bytes) {
+                Ok(jobs) => {
+                    read += 1;
+                    let lines: String = jobs.iter().map(|job| serde_json::to_string(job).unwrap() + "\n").collect();
+                    assert_eq!(parse(lines.as_bytes()).unwrap(), jobs);
+                }
+                Err(faults) => {
+                    refused += 1;
+                    let count = bytes.split(|b| *b == b'\n').count();
+                    assert!(faults.iter().all(|f| (1..=count).contains(&f.line) && !f.reason.is_empty()));
+                }
+            }
+        }
+        assert!(read > 500 && refused > 500, "{read} {refused}");
+    }
 }
