@@ -10,7 +10,7 @@ const JOBS: &str = "60";
 /// Runs the test against the built program; says so where it cannot.
 pub fn run() -> Result<(), Fault> {
     let Some(python) = python() else {
-        println!("ci: skipped the test on a Ray cluster: no Python with ray (pip install \"ray[data]\")");
+        println!("ci: skipped the test on a Ray cluster: no Python with fusion-mesh and ray (pip install \"ray[data]\")");
         return Ok(());
     };
     let built = Command::new(env!("CARGO")).args(["build", "-p", "fusion-cli"]).current_dir(root()).status()?;
@@ -29,7 +29,7 @@ pub fn run() -> Result<(), Fault> {
 fn python() -> Option<PathBuf> {
     let named = std::env::var_os("FUSION_PYTHON").map(PathBuf::from);
     let has_ray = |python: &PathBuf| {
-        Command::new(python).args(["-c", "import ray, pyarrow"]).output().is_ok_and(|o| o.status.success())
+        Command::new(python).args(["-c", "import fusion_mesh, ray, pyarrow"]).output().is_ok_and(|o| o.status.success())
     };
     named.into_iter().chain([PathBuf::from("python3")]).find(has_ray)
 }
