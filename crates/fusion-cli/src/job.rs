@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub(crate) struct JobResult {
     /// The files that were written, in the order of the document's outputs.
+    #[expect(dead_code, reason = "workers list their folder, side files with it")]
     pub(crate) outputs: Vec<PathBuf>,
     /// The report, as `run --report` writes it.
     pub(crate) report: serde_json::Value,

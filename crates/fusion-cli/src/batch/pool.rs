@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::job_line::Job;
 use crate::progress::hold_cancel;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -111,6 +111,7 @@ fn one(
 /// A path as seen from a folder, where it lies below; with `/` between names.
 fn relative(path: &Path, from: &Path) -> String {
     let below = path.strip_prefix(from).unwrap_or(path);
-    let names: Vec<_> = below.components().map(|c| c.as_os_str().to_string_lossy()).collect();
+    let names = below.components().filter(|c| *c != Component::CurDir);
+    let names: Vec<_> = names.map(|c| c.as_os_str().to_string_lossy()).collect();
     if below.is_absolute() { path.display().to_string() } else { names.join("/") }
 }

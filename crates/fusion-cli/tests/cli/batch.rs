@@ -150,7 +150,7 @@ fn older_results_are_kept_unless_they_are_gone_on_with() {
 fn what_cannot_be_written_is_told_before_any_work() {
     let bench = Bench::new();
     bench.file("jobs.jsonl", &jobs(&[("a".into(), document(0.25))]));
-    for line in ["--results none/r.jsonl", "--results r.jsonl --cache a.off/cache", "--results r.jsonl --output a.off"]
+    for line in ["--results a.off/r.jsonl", "--results r.jsonl --cache a.off/cache", "--results r.jsonl --output a.off"]
     {
         let run = bench.run(&format!("batch jobs.jsonl {line}")).expect(6);
         assert!(run.stderr.contains("cannot write"), "{line}: {}", run.stderr);
