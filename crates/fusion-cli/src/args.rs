@@ -2,16 +2,20 @@
 
 use crate::length::angle;
 use crate::shared_args::{Common, Source, Target};
+use crate::verbs::batch::BatchArgs;
 use crate::verbs::blend::BlendArgs;
 use crate::verbs::boolean::BooleanArgs;
 use crate::verbs::cluster::ClusterArgs;
 use crate::verbs::compose::ComposeArgs;
 use crate::verbs::cut::{CutArgs, spread_path};
 use crate::verbs::detail::DetailArgs;
+use crate::verbs::grid::GridArgs;
 use crate::verbs::pose::PoseArgs;
 use crate::verbs::remesh::RemeshArgs;
 use crate::verbs::run::RunArgs;
 use crate::verbs::sharpen::SharpenArgs;
+use crate::verbs::summary::SummaryArgs;
+use crate::verbs::worker::WorkerArgs;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use fusion::operation::{Length, direction};
 use glam::DVec3;
@@ -71,6 +75,15 @@ pub enum Verb {
     Cut(CutArgs),
     /// Evaluate a document: parts, and any operations on them in any order, from one TOML file
     Run(RunArgs),
+    /// Replay many documents in worker processes, one line of results each
+    Batch(BatchArgs),
+    /// Answer requests of `batch`
+    #[command(hide = true)]
+    Worker(WorkerArgs),
+    /// Write a line of a jobs file for each combination of parameters
+    Grid(GridArgs),
+    /// Sum up the results of `batch` on one page
+    Summary(SummaryArgs),
     /// Draw a still picture
     Render(Render),
     /// Build the showcase models with their reports and pictures; needs no input
@@ -102,6 +115,10 @@ impl Verb {
             Self::Pose(_) => "pose",
             Self::Cut(_) => "cut",
             Self::Run(_) => "run",
+            Self::Batch(_) => "batch",
+            Self::Worker(_) => "worker",
+            Self::Grid(_) => "grid",
+            Self::Summary(_) => "summary",
             Self::Render(_) => "render",
             Self::Demo(_) => "demo",
             Self::Completions(_) => "completions",

@@ -15,7 +15,13 @@ pub fn read(path: &Path, sets: &[(String, String)]) -> Result<Document, Failure>
     let name = path.display();
     let text =
         fs::read_to_string(path).map_err(|e| Failure::unreadable(format!("cannot read the document {name}: {e}")))?;
-    let mut document = Document::parse(&text).map_err(|e| Failure::unreadable(format!("{name}: {e}")))?;
+    read_text(&text, path, sets)
+}
+
+/// The same for a text that stands for what could be the file at a path.
+pub fn read_text(text: &str, path: &Path, sets: &[(String, String)]) -> Result<Document, Failure> {
+    let name = path.display();
+    let mut document = Document::parse(text).map_err(|e| Failure::unreadable(format!("{name}: {e}")))?;
     for (parameter, value) in sets {
         document.set(parameter, value).map_err(|e| Failure::unreadable(format!("{name}, --set {parameter}: {e}")))?;
     }

@@ -1,6 +1,6 @@
 //! One document from its file to its outputs, without a session: what the batch door runs.
 
-use crate::evaluation::{CACHE_LIMIT, cache as keep, failure, folder, read, told, whole};
+use crate::evaluation::{CACHE_LIMIT, cache as keep, failure, folder, read, read_text, told, whole};
 use crate::failure::Failure;
 use crate::output::{Outputs, make_folder};
 use crate::session::unwritable;
@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub(crate) struct JobResult {
     /// The files that were written, in the order of the document's outputs.
+    #[expect(dead_code, reason = "workers list their folder, side files with it")]
     pub(crate) outputs: Vec<PathBuf>,
     /// The report, as `run --report` writes it.
     pub(crate) report: serde_json::Value,
@@ -30,8 +31,29 @@ pub(crate) fn job(
     cache: Option<&Path>,
     watch: &Watch,
 ) -> Result<JobResult, Failure> {
-    let read = read(document, sets)?;
-    let outputs = places(&read, document, output_folder)?;
+    finish(&read(document, sets)?, document, output_folder, cache, watch)
+}
+
+/// The same for the text of a document, whose paths are relative to the folder of the path by which it is told of.
+pub(crate) fn job_of_text(
+    text: &str,
+    document: &Path,
+    sets: &[(String, String)],
+    output_folder: Option<&Path>,
+    cache: Option<&Path>,
+    watch: &Watch,
+) -> Result<JobResult, Failure> {
+    finish(&read_text(text, document, sets)?, document, output_folder, cache, watch)
+}
+
+fn finish(
+    read: &Document,
+    document: &Path,
+    output_folder: Option<&Path>,
+    cache: Option<&Path>,
+    watch: &Watch,
+) -> Result<JobResult, Failure> {
+    let outputs = places(read, document, output_folder)?;
     let formats = outputs.iter().map(|path| Format::from_path(path).map_err(Failure::unreadable));
     let formats = formats.collect::<Result<Vec<_>, _>>()?;
     let made = read
@@ -46,7 +68,7 @@ pub(crate) fn job(
         }
         staged.commit().map(drop).map_err(unwritable)
     })?;
-    let report = told(&whole(&read, document, &made), &made, &outputs);
+    let report = told(&whole(read, document, &made), &made, &outputs);
     Ok(JobResult { outputs, report })
 }
 

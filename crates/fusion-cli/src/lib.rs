@@ -12,23 +12,29 @@
 //! | `drawings.rs` | what the stages of a blend draw |
 //! | `evaluation.rs` | documents read, and told about |
 //! | `failure.rs` | exit codes |
-//! | `job.rs` | one document without a session |
 //! | `session.rs` | one command: reading, progress, messages, writing |
 //! | `text_file.rs` | files of curves, clusters, profiles and the like |
 //! | `output.rs` | files that appear all at once or not at all |
+//! | `picture.rs` | still pictures |
 //! | `progress.rs` | bars and Ctrl-C |
+//! | `job_line.rs`, `job.rs` | lines of a jobs file; one document without a session |
+//! | `batch/` | many jobs in worker processes |
+//! | `page/` | the page that sums them up |
 //! | `watched.rs` | a job done again after every save |
 //! | `verbs/` | one file per verb |
 
 mod args;
+mod batch;
 mod drawings;
 mod evaluation;
 mod failure;
-#[allow(dead_code, reason = "for the batch door")]
 mod job;
+pub mod job_line;
 mod length;
 mod options;
 mod output;
+mod page;
+mod picture;
 mod progress;
 mod session;
 mod shared_args;
@@ -85,6 +91,10 @@ fn dispatch(session: &Session, verb: Verb) -> Result<(), Failure> {
         Verb::Pose(args) => verbs::pose::run(session, args),
         Verb::Cut(args) => verbs::cut::run(session, &args),
         Verb::Run(args) => verbs::run::run(session, &args),
+        Verb::Batch(args) => verbs::batch::run(session, &args),
+        Verb::Worker(args) => verbs::worker::run(session, &args),
+        Verb::Grid(args) => verbs::grid::run(session, &args),
+        Verb::Summary(args) => verbs::summary::run(session, &args),
         Verb::Render(args) => verbs::render::run(session, &args),
         Verb::Completions(args) => verbs::completions::run(&args),
         Verb::Schema => verbs::schema::run(),

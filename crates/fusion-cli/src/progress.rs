@@ -30,6 +30,8 @@ pub struct Progress {
     start: Instant,
     /// Set once the time limit has ended the job.
     late: Arc<AtomicBool>,
+    /// Set by Ctrl-C and by the time limit.
+    stopped: Arc<AtomicBool>,
     /// What long loops report to.
     pub watch: Watch,
 }
@@ -52,9 +54,11 @@ impl Progress {
                 let _ = writeln!(std::io::stderr(), "{line}");
             })),
         };
-        let stop = watch.clone();
+        let stopped = Arc::new(AtomicBool::new(false));
+        let (stop, stopping) = (watch.clone(), Arc::clone(&stopped));
         // Without a handler Ctrl-C still ends the process, only less politely.
         let _ = ctrlc::set_handler(move || {
+            stopping.store(true, Ordering::Relaxed);
             stop.cancel();
             // A job between two looks at its watch, or waiting for its input, is not waited for.
             std::thread::sleep(GRACE);
@@ -64,10 +68,11 @@ impl Progress {
         });
         let late = Arc::new(AtomicBool::new(false));
         if let Some(limit) = limit {
-            let (stop, late) = (watch.clone(), Arc::clone(&late));
+            let (stop, late, stopping) = (watch.clone(), Arc::clone(&late), Arc::clone(&stopped));
             std::thread::spawn(move || {
                 std::thread::sleep(limit);
                 late.store(true, Ordering::Relaxed);
+                stopping.store(true, Ordering::Relaxed);
                 stop.cancel();
                 std::thread::sleep(GRACE);
                 let finished = hold_cancel();
@@ -79,7 +84,7 @@ impl Progress {
                 std::process::exit(failure.code().into());
             });
         }
-        Self { bar, start, late, watch }
+        Self { bar, start, late, stopped, watch }
     }
 
     /// How long the job has run, if the time limit has ended it.
@@ -89,6 +94,11 @@ impl Progress {
 }
 
 impl Progress {
+    /// Whether the user or the time limit has asked to stop, for those who have nothing to report to the watch.
+    pub fn stopped(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stopped)
+    }
+
     /// Wipes the bar while something else is printed.
     pub fn suspend(&self, print: impl FnOnce()) {
         self.bar.suspend(print);

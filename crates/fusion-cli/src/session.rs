@@ -11,6 +11,8 @@ use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// What every verb works with.
@@ -65,6 +67,16 @@ impl Session {
     /// What long loops report to.
     pub fn watch(&self) -> &Watch {
         &self.progress.watch
+    }
+
+    /// Set once the user or the time limit has asked to stop.
+    pub fn stopped(&self) -> Arc<AtomicBool> {
+        self.progress.stopped()
+    }
+
+    /// The options of every verb.
+    pub fn common(&self) -> &Common {
+        &self.common
     }
 
     /// Tells the user something, unless asked to be quiet.

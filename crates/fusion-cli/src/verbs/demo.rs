@@ -3,8 +3,8 @@
 use crate::args::Demo as Args;
 use crate::failure::Failure;
 use crate::output::print;
+use crate::picture::draw;
 use crate::session::Session;
-use crate::verbs::render::draw;
 use fusion::mesh_core::{FaceOrigin, shapes};
 use fusion::operation::{Boolean, Precision, SetOperation};
 use fusion::{palette_index, render};

@@ -1,5 +1,6 @@
 //! One file per verb. Each turns arguments into one library call and its result into output.
 
+pub mod batch;
 pub mod blend;
 pub mod boolean;
 pub mod cluster;
@@ -10,6 +11,7 @@ pub mod cut;
 pub mod demo;
 pub mod detail;
 pub mod features;
+pub mod grid;
 pub mod info;
 pub mod man;
 pub mod pose;
@@ -18,3 +20,5 @@ pub mod render;
 pub mod run;
 pub mod schema;
 pub mod sharpen;
+pub mod summary;
+pub mod worker;

@@ -3,12 +3,11 @@
 use crate::args::{Color, Render as Args};
 use crate::failure::Failure;
 use crate::output::check_writable;
+use crate::picture::draw;
 use crate::session::{Session, counts};
 use crate::text_file::read_text;
-use fusion::mesh_core::TriMesh;
 use fusion::{Report, render};
 use serde_json::Value;
-use std::fs;
 use std::path::Path;
 
 /// Draws one mesh.
@@ -42,21 +41,6 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
     };
     let png = report.time("render", || draw(session, &model.mesh, &params))?;
     session.write_files(vec![(args.output.clone(), png)], &report)
-}
-
-/// A picture as the bytes of a PNG file.
-pub fn draw(session: &Session, mesh: &TriMesh, params: &render::Params) -> Result<Vec<u8>, Failure> {
-    let picture = render::picture(mesh, params, session.watch()).map_err(|e| match e {
-        render::Error::Cancelled(_) => Failure::cancelled(),
-        e => Failure::impossible(e),
-    })?;
-    // The renderer saves to files only; its place is taken by the output once everything has worked.
-    let save = || -> Result<Vec<u8>, Box<dyn std::error::Error>> {
-        let file = tempfile::Builder::new().suffix(".png").tempfile()?.into_temp_path();
-        render::save(&picture, &file)?;
-        Ok(fs::read(&file)?)
-    };
-    save().map_err(Failure::unwritable)
 }
 
 /// A palette index per face, from a file of origins: the parts apart, and apart from what was made new.

@@ -35,7 +35,7 @@ const VERBS: [&str; 22] = [
 ];
 
 /// Verbs that read no mesh.
-const INPUTLESS: [&str; 5] = ["demo", "completions", "schema", "man", "help"];
+const INPUTLESS: [&str; 8] = ["batch", "grid", "summary", "demo", "completions", "schema", "man", "help"];
 
 /// What `run` replays.
 const JOB: &str = r#"

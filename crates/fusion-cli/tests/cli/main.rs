@@ -1,5 +1,8 @@
 //! The program from outside.
 
+mod batch;
+#[cfg(unix)]
+mod batch_kills;
 mod blends;
 mod cluster;
 mod composes;
