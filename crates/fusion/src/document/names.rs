@@ -131,6 +131,13 @@ impl<'a> Names<'a> {
         Ok(())
     }
 
+    /// Refuses a primitive on an opening of a shape that there never is.
+    pub(super) fn check_openings(&self) -> Result<(), Error> {
+        let mut openings =
+            self.primitives.values().filter_map(|named| Some((named, named.primitive.opening.as_ref()?)));
+        openings.try_for_each(|(named, opening)| self.shape(&opening.part, named.places.span("loop")))
+    }
+
     /// What no step has taken up.
     pub(super) fn left(self) -> Vec<String> {
         self.left

@@ -42,6 +42,7 @@ impl Document {
         let order = names.order(&parts)?;
         steps.iter_mut().try_for_each(|step| names.step(step))?;
         outputs.iter_mut().try_for_each(|output| names.output(output))?;
+        names.check_openings()?;
         let left = names.left();
         let (parameters, unused) = parameters.finish();
         Ok(Self { text: text.into(), parameters, unused, parts, order, primitives, steps, outputs, left })

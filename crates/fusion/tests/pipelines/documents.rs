@@ -99,6 +99,7 @@ fn anything_follows_anything() {
         [[step]]
         do = \"blend\"
         of = \"peanut\"
+        near = [[0.65, 0.25, 0.0]]
         radius = \"$soft\"
         [[step]]
         do = \"pose\"

@@ -94,7 +94,7 @@ fn known(made: &Evaluation) -> Vec<bool> {
     made.steps.iter().map(|s| s.is_known).collect()
 }
 
-const CHAIN: &str = "[[step]]\ndo = \"union\"\nof = [\"a\", \"b\"]\n[[step]]\ndo = \"pose\"\nof = \"a\"\nscale = 2\n[[step]]\ndo = \"blend\"\nof = \"a\"\nradius = 0.1\n[[output]]\nof = \"a\"\nfile = \"a.off\"\n";
+const CHAIN: &str = "[[step]]\ndo = \"union\"\nof = [\"a\", \"b\"]\n[[step]]\ndo = \"pose\"\nof = \"a\"\nscale = 2\n[[step]]\ndo = \"cut\"\nof = \"a\"\nplane = { point = [0, 0, 0.1], normal = [0, 0, 1] }\n[[output]]\nof = \"a\"\nfile = \"a.off\"\n";
 
 #[test]
 fn an_edit_takes_only_what_it_touches() {
@@ -102,7 +102,7 @@ fn an_edit_takes_only_what_it_touches() {
     let cache = Cache::default();
     assert_eq!(known(&evaluate(&document, &cache).unwrap()), [false; 3]);
     assert_eq!(known(&evaluate(&document, &cache).unwrap()), [true; 3]);
-    document.set("3.radius", "0.05").unwrap();
+    document.set("3.snap", "0.05").unwrap();
     assert_eq!(known(&evaluate(&document, &cache).unwrap()), [true, true, false]);
     document.set("2.scale", "3").unwrap();
     assert_eq!(known(&evaluate(&document, &cache).unwrap()), [true, false, false]);
