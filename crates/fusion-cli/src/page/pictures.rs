@@ -41,8 +41,8 @@ pub fn take(session: &Session, outcomes: &[Outcome], folder: &Path) -> Result<Pi
             break;
         }
         let Some(place) = &job.folder else { continue };
-        let files = job.outputs.iter().map(|o| folder.join(place).join(&o.file));
-        if let Some(mesh) = files.filter_map(|f| mesh(&f)).next() {
+        let mut files = job.outputs.iter().map(|o| folder.join(place).join(&o.file));
+        if let Some(mesh) = files.find_map(|f| mesh(&f)) {
             let look = render::Params { width: 220, height: 220, ..render::Params::default() };
             pictures.outputs.insert(job.id.clone(), source(session, &mesh, &look)?);
         }
