@@ -78,7 +78,9 @@ mod tests {
     #[test]
     fn rate_and_time_left_follow_from_what_is_done() {
         let mut meter = Meter::start(12, false);
-        [Step::Done, Step::Failed, Step::Done].map(|step| meter.step(step));
+        for step in [Step::Done, Step::Failed, Step::Done] {
+            meter.step(step);
+        }
         assert_eq!(meter.line(1.5), "3 of 12 jobs, 2.0 a second, 4 s left, 1 failed: 25 %");
     }
 }

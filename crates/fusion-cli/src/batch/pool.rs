@@ -55,7 +55,7 @@ pub fn run(
                 while !stop() {
                     let place = next.fetch_add(1, Ordering::Relaxed);
                     let Some(job) = plan.jobs.get(place) else { return };
-                    if let Err(failure) = one(plan, &mut seat, place, job, &desk, &stop) {
+                    if let Err(failure) = one(plan, &mut seat, place, job, &desk, stop) {
                         halt.store(true, Ordering::Relaxed);
                         desk.lock().unwrap_or_else(PoisonError::into_inner).failure.get_or_insert(failure);
                     }

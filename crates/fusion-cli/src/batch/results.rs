@@ -36,7 +36,7 @@ impl Results {
             let _locked = open(path)?;
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let free = |n: &usize| !path.with_file_name(format!("{name}.{n}")).exists();
-            let moved = path.with_file_name(format!("{name}.{}", (1..).find(free).unwrap_or_default()));
+            let moved = path.with_file_name(format!("{name}.{}", (1..1_000_000).find(free).unwrap_or_default()));
             fs::rename(path, &moved).map_err(|e| cannot_write(&moved, &e))?;
             before.moved = Some(moved);
         }

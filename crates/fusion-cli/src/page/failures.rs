@@ -5,11 +5,14 @@ use crate::page::escape::{escape, time};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
+/// State, exit code, and the code of the first error.
+pub type Reason = (State, i32, String);
+
 /// Examples of each reason.
 pub const EXAMPLES: usize = 3;
 
 /// All that is not done, by state, code and reason; the most frequent first.
-pub fn by_reason(outcomes: &[Outcome]) -> Vec<((State, i32, String), Vec<&Outcome>)> {
+pub fn by_reason(outcomes: &[Outcome]) -> Vec<(Reason, Vec<&Outcome>)> {
     let mut reasons: BTreeMap<_, Vec<&Outcome>> = BTreeMap::new();
     for outcome in outcomes.iter().filter(|o| o.state != State::Done) {
         reasons.entry((outcome.state, outcome.code, outcome.reason().to_string())).or_default().push(outcome);

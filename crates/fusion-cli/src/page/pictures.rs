@@ -7,9 +7,9 @@ use crate::picture::draw;
 use crate::session::Session;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use fusion::mesh_core::{TriMesh, bounds};
+use fusion::mesh_core::{TriMesh, bounds, shapes};
 use fusion::render;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use mesh_io::Format;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,8 +18,9 @@ use std::path::Path;
 const OUTPUTS: usize = 36;
 /// Largest file that is drawn, in bytes.
 const LARGEST: u64 = 200_000_000;
-/// Around a place, as a share of the model's diagonal, faces are marked.
+/// How far outside of a mesh's box a place may lie that is its, and the radius of the ball that marks it, as shares of the box's diagonal.
 const REACH: f64 = 0.05;
+const BALL: f64 = 0.02;
 const PLAIN: [f64; 3] = [0.72, 0.75, 0.8];
 const MARKED: [f64; 3] = [0.9, 0.3, 0.1];
 
@@ -40,8 +41,8 @@ pub fn take(session: &Session, outcomes: &[Outcome], folder: &Path) -> Result<Pi
             break;
         }
         let Some(place) = &job.folder else { continue };
-        let files = job.outputs.iter().map(|o| folder.join(place).join(&o.file));
-        if let Some(mesh) = files.filter_map(|f| mesh(&f)).next() {
+        let mut files = job.outputs.iter().map(|o| folder.join(place).join(&o.file));
+        if let Some(mesh) = files.find_map(|f| mesh(&f)) {
             let look = render::Params { width: 220, height: 220, ..render::Params::default() };
             pictures.outputs.insert(job.id.clone(), source(session, &mesh, &look)?);
         }
@@ -52,7 +53,8 @@ pub fn take(session: &Session, outcomes: &[Outcome], folder: &Path) -> Result<Pi
             let Some(at) = at.map(DVec3::from) else { continue };
             let mut meshes = job.inputs.iter().filter_map(|f| mesh(Path::new(f)));
             if let Some(mesh) = meshes.find(|mesh| is_at(mesh, at)) {
-                pictures.places.insert(job.id.clone(), source(session, &mesh, &look_at(&mesh, at))?);
+                let (marked, look) = mark(mesh, at);
+                pictures.places.insert(job.id.clone(), source(session, &marked, &look)?);
             }
         }
     }
@@ -73,18 +75,17 @@ fn is_at(mesh: &TriMesh, at: DVec3) -> bool {
     at.cmpge(bounds.min - margin).all() && at.cmple(bounds.max + margin).all()
 }
 
-/// A view from the side of the place, with the faces around it marked.
-fn look_at(mesh: &TriMesh, at: DVec3) -> render::Params {
-    let bounds = bounds(mesh);
-    let reach = REACH * bounds.diagonal();
+/// The mesh with a ball at the place, and a view from its side.
+fn mark(mut mesh: TriMesh, at: DVec3) -> (TriMesh, render::Params) {
+    let bounds = bounds(&mesh);
     let out = (at - 0.5 * (bounds.min + bounds.max)).normalize_or_zero();
     let view = out + 0.35 * render::Params::default().view.normalize();
-    let near = |face: &[_; 3]| {
-        let corners = face.map(|v: fusion::mesh_core::VertexId| mesh.positions[v.index()]);
-        corners.iter().any(|p| p.distance(at) < reach) || (corners.iter().sum::<DVec3>() / 3.0).distance(at) < reach
-    };
-    let color = mesh.faces.iter().map(|face| if near(face) { MARKED } else { PLAIN }).collect();
-    render::Params { width: 320, height: 320, view, color: render::Color::PerFace(color), ..render::Params::default() }
+    let ball = shapes::posed(shapes::icosphere(BALL * bounds.diagonal(), 2), DQuat::IDENTITY, at);
+    let mut color = vec![PLAIN; mesh.faces.len()];
+    mesh.append(&ball);
+    color.resize(mesh.faces.len(), MARKED);
+    let color = render::Color::PerFace(color);
+    (mesh, render::Params { width: 320, height: 320, view, color, ..render::Params::default() })
 }
 
 fn source(session: &Session, mesh: &TriMesh, look: &render::Params) -> Result<String, Failure> {

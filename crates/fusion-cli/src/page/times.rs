@@ -39,8 +39,8 @@ pub fn histogram(outcomes: &[Outcome]) -> String {
     // Writing into a text cannot fail.
     let _ = write!(svg, "<svg viewBox=\"{view}\" width=\"{width:.0}\" role=\"img\" aria-label=\"Times of jobs\">");
     for (i, [done, not]) in bars.iter().enumerate() {
-        let from = time(10_f64.powf((first + i as i64) as f64 / BARS));
-        let to = time(10_f64.powf((first + i as i64 + 1) as f64 / BARS));
+        let from = time(10_f64.powf((first as f64 + i as f64) / BARS));
+        let to = time(10_f64.powf((first as f64 + i as f64 + 1.0) / BARS));
         let (x, good, bad) = (WIDTH * i as f64, HEIGHT * *done as f64 / most, HEIGHT * *not as f64 / most);
         let _ = write!(svg, "<g><title>{from} to {to}: {done} done, {not} not</title>");
         for (class, top, height) in [("done", HEIGHT - good, good), ("not", HEIGHT - good - bad, bad)] {
@@ -58,7 +58,7 @@ pub fn histogram(outcomes: &[Outcome]) -> String {
     }
     let step = if count > 12 { BARS as usize } else { 2 };
     for i in (0..=count).step_by(step) {
-        let label = time(10_f64.powf((first + i as i64) as f64 / BARS));
+        let label = time(10_f64.powf((first as f64 + i as f64) / BARS));
         let _ =
             write!(svg, "<text class=\"axis\" x=\"{:.1}\" y=\"{:.0}\">{label}</text>", WIDTH * i as f64, HEIGHT + 16.0);
     }

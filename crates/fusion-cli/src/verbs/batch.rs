@@ -161,15 +161,14 @@ fn read_jobs(path: &Path) -> Result<Vec<Job>, Failure> {
 }
 
 fn malformed(path: &Path, faults: &[Fault]) -> Failure {
-    let mut text = String::new();
-    for (i, fault) in faults.iter().take(TOLD).enumerate() {
-        let sep = if i == 0 { "" } else { "\n  " };
-        text += &format!("{sep}{}: line {}: {}", path.display(), fault.line, fault.reason);
-    }
+    let told = faults.iter().take(TOLD);
+    let mut lines: Vec<String> =
+        told.map(|fault| format!("{}: line {}: {}", path.display(), fault.line, fault.reason)).collect();
     if faults.len() > TOLD {
-        text += &format!("\n  and {} more lines", faults.len() - TOLD);
+        lines.push(format!("and {} more lines", faults.len() - TOLD));
     }
-    Failure::unreadable(format!("{text}\nno job was started"))
+    lines.push("no job was started".into());
+    Failure::unreadable(lines.join("\n  "))
 }
 
 fn shard(args: &BatchArgs, session: &Session) -> Result<Shard, Failure> {

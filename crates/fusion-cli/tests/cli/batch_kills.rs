@@ -110,7 +110,7 @@ fn a_crash_a_hang_and_too_much_memory_cost_a_line_each() {
         assert!(["before", "after"].iter().all(|id| found[*id]["state"] == "done"));
         assert!(!bench.path("slow").exists());
     };
-    ended("--timeout 0.5", "timeout", 4, "--timeout");
+    ended("--timeout 5", "timeout", 4, "--timeout");
     ended("--memory 150", "memory", 4, "--memory");
     // A crash, by killing the worker from outside.
     let mut child = start(&bench, "batch jobs.jsonl --results crash.jsonl --workers 1");
