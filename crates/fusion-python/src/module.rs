@@ -1,5 +1,8 @@
 //! The functions that Python sees. Meshes are objects with the attributes of `fusion_mesh.Mesh`, each with the argument's name.
 
+// Arguments come from Python by value.
+#![allow(clippy::needless_pass_by_value)]
+
 use crate::arrays::{Part, model_from, model_to_python, models_from, polygons_to_python};
 use crate::failure::Fault;
 use crate::job::{self, Terms};
