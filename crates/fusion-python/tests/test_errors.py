@@ -9,7 +9,7 @@ import fusion_mesh as fm
 
 def test_a_ball_that_does_not_fit_says_which_does():
     with pytest.raises(fm.InfeasibleError) as refused:
-        fm.blend(fm.box((1, 1, 1)), radius=5, overlap="error")
+        fm.blend(fm.box((1, 1, 1)), radius=0.6, overlap="error")
     error = refused.value
     assert error.diagnostic["code"] == "radius_too_large" and len(error.place) == 3
     assert 0 < error.workable_radius <= 0.5

@@ -207,7 +207,7 @@ def difference(
     --------
     >>> import fusion_mesh as fm
     >>> drilled = fm.difference(fm.box((2, 2, 2)), fm.box((1, 1, 3)))
-    >>> fm.info(drilled)["volume"]
+    >>> round(fm.info(drilled)["volume"], 9)
     6.0
     """
     options: Dict[str, Any] = {
@@ -310,7 +310,7 @@ def intersection(
     --------
     >>> import fusion_mesh as fm
     >>> shared = fm.intersection(fm.box((2, 2, 2)), fm.box((1, 1, 3)))
-    >>> fm.info(shared)["volume"]
+    >>> round(fm.info(shared)["volume"], 9)
     2.0
     """
     options: Dict[str, Any] = {
