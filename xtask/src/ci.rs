@@ -1,6 +1,6 @@
 //! Everything a change must pass, in order of how fast it fails.
 
-use crate::{Fault, regress, root, tidy};
+use crate::{Fault, python_tests, regress, root, tidy};
 use mesh_core::Stopwatch;
 use std::process::Command;
 
@@ -12,9 +12,12 @@ pub fn run() -> Result<(), Fault> {
         cargo(&["fmt", "--all", "--check"])?;
     }
     if installed("clippy") {
-        cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])?;
+        // The Python module as well; the tests below build without it.
+        let module = "fusion-python/extension";
+        cargo(&["clippy", "--workspace", "--all-targets", "--features", module, "--", "-D", "warnings"])?;
     }
     cargo(&["test", "--workspace"])?;
+    python_tests::run()?;
     // Packs every crate as it would be published, without building it again.
     cargo(&["package", "--workspace", "--exclude", "xtask", "--no-verify", "--allow-dirty", "--quiet"])?;
     regress::run(&regress::Options::default())?;

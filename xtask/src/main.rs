@@ -8,6 +8,8 @@
 //! | `collect.rs` | real models from where they come from |
 //! | `bench.rs` | benchmarks into a page |
 //! | `pages.rs` | what stands between marks on a page |
+//! | `python.rs`, `python_types.rs` | the Python functions of all operations |
+//! | `python_tests.rs` | the Python module, built and tested |
 //! | `circles.rs` | files that import each other |
 //! | `tidy.rs` | crate arrows, file lengths, citations, paths, pages that are stale |
 
@@ -18,6 +20,9 @@ mod collect;
 mod fixtures;
 mod models;
 mod pages;
+mod python;
+mod python_tests;
+mod python_types;
 mod regress;
 mod tidy;
 
@@ -46,6 +51,8 @@ enum Chore {
     Fixtures(fixtures::Options),
     /// Collects the real models behind the tables in docs/ into a folder, and checks that they are the ones measured
     Models(collect::Options),
+    /// Writes the Python functions of all operations
+    Python,
     /// Writes the keys of documents into docs/documents.md
     Reference,
     /// Runs the cases of fixtures/ against their approved records; with --models also real models
@@ -60,6 +67,7 @@ fn main() -> ExitCode {
         Chore::Bench(options) => bench::run(&options),
         Chore::Fixtures(options) => fixtures::run(&options),
         Chore::Models(options) => collect::run(&options),
+        Chore::Python => python::write(),
         Chore::Reference => pages::DOCUMENTS.renew(&fusion::document::reference()),
         Chore::Regress(options) => regress::run(&options),
         Chore::Tidy => tidy::run(),

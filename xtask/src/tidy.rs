@@ -1,6 +1,6 @@
 //! The house rules a compiler does not check: crate arrows, circles of files, file lengths, lints switched on, citations, paths, pages written by the machine.
 
-use crate::{Fault, circles, pages, root, walk};
+use crate::{Fault, circles, pages, python, root, walk};
 use serde_json::Value;
 use std::fs;
 use std::process::Command;
@@ -45,6 +45,9 @@ pub fn run() -> Result<(), Fault> {
     if !pages::DOCUMENTS.holds(&fusion::document::reference())? {
         faults
             .push(format!("{}: its keys are not those of the code; run cargo xtask reference", pages::DOCUMENTS.page));
+    }
+    if !python::is_current()? {
+        faults.push(format!("{}: is not what the operations say; run cargo xtask python", python::name()));
     }
     for fault in &faults {
         println!("tidy: {fault}");

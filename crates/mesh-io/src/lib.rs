@@ -21,7 +21,7 @@
 //! | `folder.rs` | references to side files that are safe to follow |
 //! | `obj/`, `ply/`, `off/`, `stl.rs`, `gltf/`, `threemf/` | one format each, reader and writer; curves as OBJ lines |
 //! | `text.rs`, `number.rs` | tokens of text files; numbers as text, bit for bit |
-//! | `soup.rs`, `triangulate.rs` | polygons to triangles |
+//! | `soup.rs`, `triangulate.rs`, `polygons.rs` | polygons to triangles |
 //! | `weld.rs` | merging vertices at the same place |
 //! | `encode.rs`, `outline.rs`, `vary.rs` | what writers share: pieces and side files, polygons, how finely attributes vary |
 
@@ -39,6 +39,7 @@ mod obj;
 mod off;
 mod outline;
 mod ply;
+mod polygons;
 mod read;
 mod soup;
 mod stl;

@@ -8,7 +8,7 @@ use super::threads::Threads;
 use crate::{Fault, root};
 use fusion::Document;
 use fusion::document::{Cache, Evaluation, Precisions};
-use mesh_core::{Connected, Stopwatch, Watch, area, topology, validate, volume};
+use mesh_core::{Connected, Stopwatch, TriMesh, Watch, area, topology, validate, volume};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -60,6 +60,10 @@ pub fn run(bless: bool, reference: &mut Option<Reference>, threads: &mut Threads
     Ok(faults)
 }
 
+fn first_mesh(made: &Result<Evaluation, fusion::Error>) -> Option<&TriMesh> {
+    made.as_ref().ok()?.outputs.first().map(|output| &output.outcome.model.mesh)
+}
+
 fn replay(
     path: &Path,
     name: &str,
@@ -72,8 +76,7 @@ fn replay(
     let start = Stopwatch::start();
     // A cache of each run's own, or the second would do nothing.
     let job = || document.evaluate(folder, &Cache::in_memory(0), Precisions::ByFile, &Watch::default());
-    let mesh = |made: &Result<Evaluation, _>| made.as_ref().ok()?.outputs.first().map(|o| &o.outcome.model.mesh);
-    let (made, differs) = threads.twice(name, job, mesh);
+    let (made, differs) = threads.twice(name, job, first_mesh);
     let made = match made {
         Ok(mut made) if made.outputs.len() == 1 => made.outputs.remove(0).outcome.model.mesh,
         Ok(made) => return Ok(vec![format!("has {} outputs instead of one", made.outputs.len())]),

@@ -1,0 +1,47 @@
+"""The native core."""
+
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+
+from ._mesh import Mesh
+from ._types import FloatArray, IntArray
+
+__version__: str
+
+def run(
+    operation: str,
+    options: Dict[str, Any],
+    parts: Sequence[Tuple[str, Mesh]],
+    precision: str,
+    threads: Optional[int] = None,
+    progress: Optional[Callable[[str, float], Optional[bool]]] = None,
+) -> Dict[str, Any]: ...
+def max_radius(
+    operation: str,
+    options: Dict[str, Any],
+    parts: Sequence[Tuple[str, Mesh]],
+    threads: Optional[int] = None,
+    progress: Optional[Callable[[str, float], Optional[bool]]] = None,
+) -> Tuple[float, str, Optional[List[float]]]: ...
+def info(
+    part: Tuple[str, Mesh],
+    threads: Optional[int] = None,
+    progress: Optional[Callable[[str, float], Optional[bool]]] = None,
+) -> Dict[str, Any]: ...
+def features(
+    part: Tuple[str, Mesh],
+    angle: float,
+    radii: bool,
+    threads: Optional[int] = None,
+    progress: Optional[Callable[[str, float], Optional[bool]]] = None,
+) -> List[Dict[str, Any]]: ...
+def render(
+    part: Tuple[str, Mesh],
+    view: Dict[str, Any],
+    threads: Optional[int] = None,
+    progress: Optional[Callable[[str, float], Optional[bool]]] = None,
+) -> bytes: ...
+def read(path: str) -> Dict[str, Any]: ...
+def write(part: Tuple[str, Mesh], path: str) -> Tuple[List[str], List[str]]: ...
+def as_written(part: Tuple[str, Mesh], path: str) -> Optional[Dict[str, Any]]: ...
+def triangulate(name: str, vertices: FloatArray, sizes: IntArray, corners: IntArray) -> Dict[str, Any]: ...
+def cli(arguments: Sequence[str]) -> int: ...

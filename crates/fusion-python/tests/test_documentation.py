@@ -1,0 +1,91 @@
+"""Examples run, types are right, and what is promised about the package's files holds."""
+
+import doctest
+import importlib
+import inspect
+import os
+import pkgutil
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import fusion_mesh as fm
+
+ROOT = Path(__file__).parent.parent
+NAMES = sorted(m.name for m in pkgutil.iter_modules(fm.__path__) if m.name not in ("_native", "_accessor"))
+
+
+@pytest.mark.parametrize("name", ["", *NAMES])
+def test_examples_of_docstrings_run(name):
+    module = importlib.import_module(f"fusion_mesh.{name}" if name else "fusion_mesh")
+    result = doctest.testmod(module, optionflags=doctest.ELLIPSIS)
+    assert result.failed == 0
+
+
+def test_every_function_is_documented():
+    for name in fm.__all__:
+        thing = getattr(fm, name)
+        assert name == "__version__" or inspect.getdoc(thing), name
+        if inspect.isfunction(thing):
+            text = inspect.getdoc(thing)
+            for parameter in inspect.signature(thing).parameters.values():
+                assert re.search(rf"\b{parameter.name}\b", text), f"{name}: {parameter.name}"
+            assert ">>>" in text, name
+
+
+def test_documents_run(tmp_path, monkeypatch):
+    for page in (ROOT / "README.md", ROOT.parent.parent / "docs" / "python.md"):
+        blocks = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+        assert blocks
+        monkeypatch.chdir(tmp_path)
+        known = {}
+        for block in blocks:
+            needs = set(re.findall(r"^import (\w+)|^from (\w+)", block, flags=re.MULTILINE))
+            if any(importlib.util.find_spec(name) is None for pair in needs for name in pair if name):
+                continue
+            exec(compile(block, str(page), "exec"), known)
+
+
+def mypy(*arguments):
+    """Runs mypy on the package as it is imported here, without looking into other packages."""
+    environment = {**os.environ, "MYPYPATH": str(Path(fm.__file__).parent.parent)}
+    settings = ["--config-file", str(ROOT / "pyproject.toml"), "--cache-dir", os.devnull]
+    return subprocess.run([sys.executable, "-m", "mypy", *settings, *arguments], capture_output=True, text=True, env=environment)
+
+
+def test_a_strict_type_checker_passes():
+    pytest.importorskip("mypy")
+    checked = mypy("-p", "fusion_mesh", "--strict")
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+    checked = mypy(str(ROOT / "examples" / "typed.py"), "--strict")
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+
+
+def test_stubs_are_those_of_the_module():
+    pytest.importorskip("mypy")
+    environment = {**os.environ, "MYPYPATH": str(Path(fm.__file__).parent.parent)}
+    run = [sys.executable, "-m", "mypy.stubtest", "fusion_mesh._native", "--ignore-disjoint-bases"]
+    checked = subprocess.run(run, capture_output=True, text=True, env=environment)
+    if "unrecognized arguments" in checked.stderr:
+        checked = subprocess.run(run[:-1], capture_output=True, text=True, env=environment)
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+
+
+def test_only_numpy_is_needed():
+    code = (
+        "import sys; before = set(sys.modules); import fusion_mesh, fusion_mesh._cli; "
+        "print(sorted({m.split('.')[0] for m in set(sys.modules) - before} - set(sys.stdlib_module_names)))"
+    )
+    if sys.version_info < (3, 10):
+        pytest.skip("sys.stdlib_module_names")
+    printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert printed.strip() == "['fusion_mesh', 'numpy']"
+
+
+def test_a_picture_stands_for_a_result():
+    page = fm.union(fm.box((2, 2, 2)), fm.box((1, 1, 3)), radius=0.1)._repr_html_()
+    assert "data:image/png;base64," in page and "<td>True</td>" in page
+    assert fm.box()._repr_png_().startswith(b"\x89PNG")

@@ -1,0 +1,120 @@
+//! Builds the Python module with the build of the tests, and runs its tests in an environment of its own.
+
+use crate::{Fault, root};
+use mesh_core::Stopwatch;
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What the tests need besides NumPy; only pytest must be there.
+const PACKAGES: [&str; 5] = ["numpy", "pytest", "trimesh", "pyvista", "mypy"];
+/// Set by who wants a failure where there is no Python.
+const INSISTS: &str = "FUSION_CI_REQUIRE";
+
+/// Builds and tests the module, or says why not.
+pub fn run() -> Result<(), Fault> {
+    let start = Stopwatch::start();
+    let Some(python) = interpreter() else { return absent("Python 3.9 or later is not installed") };
+    let target = target()?;
+    let Some(python) = environment(&python, &target.join("python"))? else {
+        return absent("an environment with NumPy and pytest cannot be made");
+    };
+    let module = build(&target)?;
+    let site = install(&module, &target.join("python"))?;
+    // Errors of the tests are to be seen with everything they print.
+    let mut tests = Command::new(&python);
+    tests.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "--durations=5"]).arg(crate_folder().join("tests"));
+    tests.env("PYTHONPATH", &site).env("PYTHONDONTWRITEBYTECODE", "1").current_dir(crate_folder());
+    if !tests.status()?.success() {
+        return Err("the tests of the Python module failed".into());
+    }
+    println!("ci: python: {:.0} s", start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// Says that there was nothing to do, or fails if that was insisted on.
+fn absent(why: &str) -> Result<(), Fault> {
+    if std::env::var(INSISTS).is_ok_and(|names| names.split(',').any(|name| name.trim() == "python")) {
+        return Err(format!("{why}, and {INSISTS} asks for python").into());
+    }
+    println!("ci: skipped the Python module: {why}");
+    Ok(())
+}
+
+/// A Python that is recent enough.
+fn interpreter() -> Option<PathBuf> {
+    let recent = "import sys; sys.exit(sys.version_info < (3, 9))";
+    let works = |name: &&str| Command::new(name).args(["-c", recent]).output().is_ok_and(|o| o.status.success());
+    ["python3", "python"].iter().find(|name| works(name)).map(PathBuf::from)
+}
+
+/// The interpreter of an environment with what the tests need; `None` if it cannot be made.
+fn environment(python: &Path, folder: &Path) -> Result<Option<PathBuf>, Fault> {
+    let own = if cfg!(windows) { folder.join("Scripts/python.exe") } else { folder.join("bin/python") };
+    let has = |names: &str| {
+        let import = format!("import {names}");
+        Command::new(&own).args(["-c", &import]).output().is_ok_and(|o| o.status.success())
+    };
+    if !has(&PACKAGES.join(", ")) {
+        println!("ci: python -m venv {}", folder.display());
+        fs::create_dir_all(folder)?;
+        let made = Command::new(python).args(["-m", "venv"]).arg(folder).status()?;
+        if !made.success() {
+            return Ok(None);
+        }
+        let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+        // Together where that works, else what there is.
+        if !Command::new(&own).args(pip).args(PACKAGES).status()?.success() {
+            for package in PACKAGES {
+                let _ = Command::new(&own).args(pip).arg(package).status()?;
+            }
+        }
+    }
+    Ok(has("numpy, pytest").then_some(own))
+}
+
+/// Builds the module; with this program it has the features that are built already.
+fn build(target: &Path) -> Result<PathBuf, Fault> {
+    let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
+    let packages = ["-p", "xtask", "-p", "fusion-python", "--features", "fusion-python/extension"];
+    let mut build = Command::new(env!("CARGO"));
+    build.args(["build", "--quiet", "--profile", profile]).args(packages).current_dir(root());
+    if !build.status()?.success() {
+        return Err("the Python module does not build".into());
+    }
+    let folder = if cfg!(debug_assertions) { "debug" } else { "release" };
+    Ok(target.join(folder).join(format!("{DLL_PREFIX}fusion_python{DLL_SUFFIX}")))
+}
+
+/// Puts the package and the module into one folder.
+fn install(module: &Path, environment: &Path) -> Result<PathBuf, Fault> {
+    let site = environment.join("package");
+    let package = site.join("fusion_mesh");
+    if package.exists() {
+        fs::remove_dir_all(&package)?;
+    }
+    fs::create_dir_all(&package)?;
+    let source = crate_folder().join("python/fusion_mesh");
+    for entry in fs::read_dir(source)? {
+        let path = entry?.path();
+        if let Some(name) = path.file_name().filter(|_| path.is_file()) {
+            fs::copy(&path, package.join(name))?;
+        }
+    }
+    let suffix = if cfg!(windows) { "pyd" } else { "abi3.so" };
+    fs::copy(module, package.join(format!("_native.{suffix}")))?;
+    Ok(site)
+}
+
+fn crate_folder() -> PathBuf {
+    root().join("crates/fusion-python")
+}
+
+/// The folder of builds.
+fn target() -> Result<PathBuf, Fault> {
+    // This program is in the folder of a profile.
+    let program = std::env::current_exe()?;
+    let target = program.ancestors().nth(2);
+    Ok(target.ok_or("the folder of builds is not known")?.to_path_buf())
+}
