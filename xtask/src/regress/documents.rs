@@ -7,7 +7,7 @@ use super::reference::Reference;
 use super::threads::Threads;
 use crate::{Fault, root};
 use fusion::Document;
-use fusion::document::{Cache, Evaluation, Precisions};
+use fusion::document::{Cache, Precisions};
 use mesh_core::{Connected, Stopwatch, Watch, area, topology, validate, volume};
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -72,8 +72,8 @@ fn replay(
     let start = Stopwatch::start();
     // A cache of each run's own, or the second would do nothing.
     let job = || document.evaluate(folder, &Cache::in_memory(0), Precisions::ByFile, &Watch::default());
-    let mesh = |made: &Result<Evaluation, _>| made.as_ref().ok()?.outputs.first().map(|o| &o.outcome.model.mesh);
-    let (made, differs) = threads.twice(name, job, mesh);
+    let (made, differs) =
+        threads.twice(name, job, |made| made.as_ref().ok()?.outputs.first().map(|o| &o.outcome.model.mesh));
     let made = match made {
         Ok(mut made) if made.outputs.len() == 1 => made.outputs.remove(0).outcome.model.mesh,
         Ok(made) => return Ok(vec![format!("has {} outputs instead of one", made.outputs.len())]),
