@@ -45,7 +45,7 @@ impl Document {
                     let told = Error::about(name, format!("there is no parameter `{name}`"));
                     told.instead_of(name, self.parameters.keys().map(String::as_str))
                 })?;
-                place.insert(name, Item::Value(value));
+                replace(place, name, value);
             }
         }
         self.replace(edited.to_string())
@@ -141,5 +141,13 @@ fn put(step: &mut toml_edit::Table, path: &str, value: toml_edit::Value) {
             None => return,
         }
     }
-    table.insert(rest, Item::Value(value));
+    replace(table, rest, value);
+}
+
+/// Puts a value in the place of another, with the comment behind it.
+fn replace(table: &mut dyn toml_edit::TableLike, key: &str, mut value: toml_edit::Value) {
+    if let Some(old) = table.get(key).and_then(Item::as_value) {
+        *value.decor_mut() = old.decor().clone();
+    }
+    table.insert(key, Item::Value(value));
 }

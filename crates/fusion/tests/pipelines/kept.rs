@@ -67,7 +67,7 @@ fn apply(document: &mut Document, &Edit(step, what, x): &Edit) {
 #[test]
 fn kept_results_are_those_of_a_fresh_evaluation() {
     let (mut good, mut bad) = (0, 0);
-    for seed in 0..24 {
+    for seed in 0..8 {
         let mut random = Random(seed);
         let steps: Vec<_> = (0..2 + random.below(3)).map(|_| (random.below(5), random.share())).collect();
         let folder = tempfile::tempdir().unwrap();
@@ -87,7 +87,7 @@ fn kept_results_are_those_of_a_fresh_evaluation() {
             apply(&mut document, &edit);
         }
     }
-    assert!(good > 60, "{good} evaluations gave something, {bad} did not");
+    assert!(good > 20, "{good} evaluations gave something, {bad} did not");
 }
 
 fn known(made: &Evaluation) -> Vec<bool> {
