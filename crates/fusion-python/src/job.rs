@@ -13,6 +13,8 @@ use std::time::Duration;
 
 /// How often the calling thread looks for Ctrl-C and tells of progress.
 const INTERVAL: Duration = Duration::from_millis(25);
+/// How long a job that is to stop is waited for.
+const GRACE: Duration = Duration::from_millis(50);
 /// That of a main thread: what runs in the program runs here.
 const STACK: usize = 8 << 20;
 
@@ -24,8 +26,12 @@ pub struct Terms {
     pub progress: Option<Py<PyAny>>,
 }
 
-/// Does a job.
-pub fn run<T: Send>(py: Python<'_>, terms: &Terms, job: impl FnOnce(&Watch) -> Result<T, Fault> + Send) -> PyResult<T> {
+/// Does a job. One that is to stop and does not within [`GRACE`] is left to end by itself, its result dropped.
+pub fn run<T: Send + 'static>(
+    py: Python<'_>,
+    terms: &Terms,
+    job: impl FnOnce(&Watch) -> Result<T, Fault> + Send + 'static,
+) -> PyResult<T> {
     let latest: Arc<Mutex<Option<(&'static str, f64)>>> = Arc::default();
     let heard = Arc::clone(&latest);
     let watch = match terms.progress {
@@ -37,38 +43,32 @@ pub fn run<T: Send>(py: Python<'_>, terms: &Terms, job: impl FnOnce(&Watch) -> R
             }
         }),
     };
-    let result = thread::scope(|scope| {
-        let (done, mut waiting) = channel();
-        let own = watch.clone();
-        let work = move || {
-            let result = catch_unwind(AssertUnwindSafe(|| on_threads(terms.threads, || job(&own))));
-            // The receiver is there until this has come.
-            let _ = done.send(result.unwrap_or_else(|panic| Err(Fault::Internal(told(panic.as_ref())))));
-        };
-        let spawned = thread::Builder::new().name("fusion".into()).stack_size(STACK).spawn_scoped(scope, work);
-        if let Err(e) = spawned {
-            return Err(Fault::Internal(format!("cannot start a thread: {e}")).raise(py));
-        }
-        let mut stopped = None;
-        loop {
-            let (answer, back) = py.detach(move || (waiting.recv_timeout(INTERVAL), waiting));
-            waiting = back;
-            match answer {
-                Ok(result) => break stopped.map_or_else(|| result.map_err(|fault| fault.raise(py)), Err),
-                Err(RecvTimeoutError::Disconnected) => {
-                    break Err(Fault::Internal("the job's thread ended early".into()).raise(py));
+    let (done, mut waiting) = channel();
+    let (own, threads) = (watch.clone(), terms.threads);
+    let work = move || {
+        let result = catch_unwind(AssertUnwindSafe(|| on_threads(threads, || job(&own))));
+        // Nobody listens any more if the caller was to stop.
+        let _ = done.send(result.unwrap_or_else(|panic| Err(Fault::Internal(told(panic.as_ref())))));
+    };
+    let spawned = thread::Builder::new().name("fusion".into()).stack_size(STACK).spawn(work);
+    spawned.map_err(|e| Fault::Internal(format!("cannot start a thread: {e}")).raise(py))?;
+    let result = loop {
+        let (answer, back) = py.detach(move || (waiting.recv_timeout(INTERVAL), waiting));
+        waiting = back;
+        match answer {
+            Ok(result) => break result.map_err(|fault| fault.raise(py))?,
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(Fault::Internal("the job's thread ended early".into()).raise(py));
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                if let Err(stop) = py.check_signals().and_then(|()| tell(py, terms, &latest)) {
+                    watch.cancel();
+                    let _ended = py.detach(move || waiting.recv_timeout(GRACE).is_ok());
+                    return Err(stop);
                 }
-                Err(RecvTimeoutError::Timeout) if stopped.is_none() => {
-                    let look = py.check_signals().and_then(|()| tell(py, terms, &latest));
-                    if let Err(stop) = look {
-                        watch.cancel();
-                        stopped = Some(stop);
-                    }
-                }
-                Err(RecvTimeoutError::Timeout) => {}
             }
         }
-    })?;
+    };
     tell(py, terms, &latest)?;
     Ok(result)
 }

@@ -52,8 +52,8 @@ fn run<'py>(
     let precision: Precision = precision.parse().map_err(|e| Fault::BadOption(format!("precision: {e}")).raise(py))?;
     let models = models_from(&parts)?;
     let terms = Terms { threads, progress };
-    let done = job::run(py, &terms, |watch| operations::by_name(operation, &options, &models, precision, watch))?;
-    drop(models);
+    let name = operation.to_string();
+    let done = job::run(py, &terms, move |watch| operations::by_name(&name, &options, &models, precision, watch))?;
     let dict = PyDict::new(py);
     dict.set_item("report", plain(py, &done.outcome.report)?)?;
     dict.set_item("origins", origins::to_python(py, &done.outcome.origins)?)?;
@@ -76,7 +76,8 @@ fn max_radius<'py>(
     let options = options_from(options)?;
     let models = models_from(&parts)?;
     let terms = Terms { threads, progress };
-    let limit = job::run(py, &terms, |watch| operations::max_radius(operation, &options, &models, watch))?;
+    let name = operation.to_string();
+    let limit = job::run(py, &terms, move |watch| operations::max_radius(&name, &options, &models, watch))?;
     Ok((limit.radius, limit.what, limit.at.map(|p| p.to_array())))
 }
 
@@ -90,7 +91,7 @@ fn info<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let model = model_from(&part.1, &part.0)?;
-    let info = job::run(py, &Terms { threads, progress }, |watch| listing::info(&model.mesh, watch))?;
+    let info = job::run(py, &Terms { threads, progress }, move |watch| listing::info(&model.mesh, watch))?;
     to_python(py, &info)
 }
 
@@ -110,7 +111,7 @@ fn features<'py>(
         return Err(Fault::BadOption(reason).raise(py));
     }
     let mesh = model_from(&part.1, &part.0)?.mesh;
-    let curves = job::run(py, &Terms { threads, progress }, |watch| listing::features(mesh, angle, radii, watch))?;
+    let curves = job::run(py, &Terms { threads, progress }, move |watch| listing::features(mesh, angle, radii, watch))?;
     to_python(py, &curves)
 }
 
@@ -125,7 +126,7 @@ fn render<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let mesh = model_from(&part.1, &part.0)?.mesh;
-    let png = job::run(py, &Terms { threads, progress }, |watch| png(&mesh, view, watch))?;
+    let png = job::run(py, &Terms { threads, progress }, move |watch| png(&mesh, view, watch))?;
     Ok(PyBytes::new(py, &png))
 }
 

@@ -16,8 +16,8 @@ import fusion_mesh as fm
 
 LONG = """
 import fusion_mesh as fm, sys, time
-ball = fm.sphere(1.0, segments=1200)
-other = fm.sphere(1.0, (0.7, 0.1, 0.2), segments=1200)
+ball = fm.sphere(1.0, segments=500)
+other = fm.sphere(1.0, (0.7, 0.1, 0.2), segments=500)
 print("begun", flush=True)
 try:
     while True:

@@ -5,6 +5,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 from ._mesh import Mesh
 from ._types import FloatArray, IntArray
 
+__all__: List[str]
 __version__: str
 
 def run(
