@@ -5,7 +5,20 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 from ._mesh import Mesh
 from ._types import FloatArray, IntArray
 
-__all__: List[str]
+__all__ = [
+    "__version__",
+    "as_written",
+    "cli",
+    "features",
+    "info",
+    "max_radius",
+    "read",
+    "render",
+    "run",
+    "triangulate",
+    "write",
+]
+
 __version__: str
 
 def run(
