@@ -2,7 +2,7 @@
 
 use crate::{Fault, root};
 use mesh_core::Stopwatch;
-use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX, EXE_SUFFIX};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,6 +12,9 @@ const PACKAGES: [&str; 5] = ["numpy", "pytest", "trimesh", "pyvista", "mypy"];
 /// Set by who wants a failure where there is no Python.
 const INSISTS: &str = "FUSION_CI_REQUIRE";
 
+/// Jobs of the test on a Ray cluster: enough for a node to die among them, few enough for half a minute.
+const JOBS: &str = "60";
+
 /// Builds and tests the module, or says why not.
 pub fn run() -> Result<(), Fault> {
     let start = Stopwatch::start();
@@ -20,12 +23,17 @@ pub fn run() -> Result<(), Fault> {
     let Some(python) = environment(&python, &target.join("python"))? else {
         return absent("an environment with NumPy and pytest cannot be made");
     };
+    if !has_ray(&python)? {
+        println!("ci: skipped the test on a Ray cluster: Ray is not in {}", python.display());
+    }
     let module = build(&target)?;
     let site = install(&module, &target.join("python"))?;
     // Errors of the tests are to be seen with everything they print.
     let mut tests = Command::new(&python);
     tests.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "--durations=5"]).arg(crate_folder().join("tests"));
     tests.env("PYTHONPATH", &site).env("PYTHONDONTWRITEBYTECODE", "1").current_dir(crate_folder());
+    let program = module.with_file_name(format!("fusion-cli{EXE_SUFFIX}"));
+    tests.env("FUSION_CLI", program).env("JOBS", JOBS);
     if !tests.status()?.success() {
         return Err("the tests of the Python module failed".into());
     }
@@ -33,9 +41,25 @@ pub fn run() -> Result<(), Fault> {
     Ok(())
 }
 
+/// Whether the environment has Ray, which is installed only where that is insisted on: it takes 600 MB.
+fn has_ray(python: &Path) -> Result<bool, Fault> {
+    let there = || Command::new(python).args(["-c", "import ray, pyarrow"]).output().is_ok_and(|o| o.status.success());
+    if there() || !insisted("ray") {
+        return Ok(there());
+    }
+    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "ray[data]"];
+    let installed = Command::new(python).args(pip).status()?.success() && there();
+    if installed { Ok(true) } else { Err(format!("Ray cannot be installed, and {INSISTS} asks for it").into()) }
+}
+
+/// Whether a door must be tested.
+fn insisted(door: &str) -> bool {
+    std::env::var(INSISTS).is_ok_and(|names| names.split(',').any(|name| name.trim() == door))
+}
+
 /// Says that there was nothing to do, or fails if that was insisted on.
 fn absent(why: &str) -> Result<(), Fault> {
-    if std::env::var(INSISTS).is_ok_and(|names| names.split(',').any(|name| name.trim() == "python")) {
+    if insisted("python") {
         return Err(format!("{why}, and {INSISTS} asks for python").into());
     }
     println!("ci: skipped the Python module: {why}");

@@ -55,7 +55,7 @@ pub fn tell(dict: &Bound<'_, PyDict>, model: &mut Model) -> PyResult<()> {
         dict.set_item("uvs", cube(py, uvs.as_slice().to_vec())?)?;
     }
     if let Some(normals) = model.normals.take() {
-        dict.set_item("normals", cube(py, normals.as_slice().iter().map(|n| n.to_array()).collect())?)?;
+        dict.set_item("normals", cube(py, normals.as_slice().iter().map(glam::DVec3::to_array).collect())?)?;
     }
     if let Some(colors) = model.colors.take() {
         dict.set_item("colors", cube(py, colors.as_slice().to_vec())?)?;

@@ -15,10 +15,11 @@ struct Stages(Vec<&'static str>);
 impl Stages {
     fn id(&mut self, stage: &'static str) -> i32 {
         let known = self.0.iter().position(|s| *s == stage);
-        known.unwrap_or_else(|| {
+        let place = known.unwrap_or_else(|| {
             self.0.push(stage);
             self.0.len() - 1
-        }) as i32
+        });
+        i32::try_from(place).unwrap_or(i32::MAX)
     }
 }
 
@@ -39,13 +40,13 @@ fn vertices<'py>(py: Python<'py>, origins: &[VertexOrigin], stages: &mut Stages)
     for (i, origin) in origins.iter().enumerate() {
         match *origin {
             VertexOrigin::Input { part, vertex } => {
-                (parts[i], ids[i], weights[i]) = (part as i32, [vertex.0, NONE], [1.0, 0.0, 0.0]);
+                (parts[i], ids[i], weights[i]) = (part.cast_signed(), [vertex.0, NONE], [1.0, 0.0, 0.0]);
             }
             VertexOrigin::Edge { part, ends: [a, b], t } => {
-                (kinds[i], parts[i], ids[i], weights[i]) = (1, part as i32, [a.0, b.0], [1.0 - t, t, 0.0]);
+                (kinds[i], parts[i], ids[i], weights[i]) = (1, part.cast_signed(), [a.0, b.0], [1.0 - t, t, 0.0]);
             }
             VertexOrigin::Face { part, face, barycentric } => {
-                (kinds[i], parts[i], ids[i], weights[i]) = (2, part as i32, [face.0, NONE], barycentric);
+                (kinds[i], parts[i], ids[i], weights[i]) = (2, part.cast_signed(), [face.0, NONE], barycentric);
             }
             VertexOrigin::New { stage } => (kinds[i], stage_ids[i]) = (3, stages.id(stage)),
         }
@@ -65,8 +66,8 @@ fn faces<'py>(py: Python<'py>, origins: &[FaceOrigin], stages: &mut Stages) -> P
     let mut ids = vec![NONE; count];
     for (i, origin) in origins.iter().enumerate() {
         match *origin {
-            FaceOrigin::Input { part, face } => (parts[i], ids[i]) = (part as i32, face.0),
-            FaceOrigin::Piece { part, face } => (kinds[i], parts[i], ids[i]) = (1, part as i32, face.0),
+            FaceOrigin::Input { part, face } => (parts[i], ids[i]) = (part.cast_signed(), face.0),
+            FaceOrigin::Piece { part, face } => (kinds[i], parts[i], ids[i]) = (1, part.cast_signed(), face.0),
             FaceOrigin::New { stage } => (kinds[i], stage_ids[i]) = (3, stages.id(stage)),
         }
     }

@@ -12,7 +12,9 @@ pub struct View {
     color: String,
     /// The part of each face for the colour `origin`, -1 for new ones.
     parts: Option<Vec<i64>>,
-    view: Option<[f64; 3]>,
+    /// Towards the eye.
+    #[pyo3(item("view"))]
+    from: Option<[f64; 3]>,
     up: Option<[f64; 3]>,
     parallel: bool,
     wireframe: bool,
@@ -35,7 +37,7 @@ pub fn png(mesh: &TriMesh, view: View, watch: &Watch) -> Result<Vec<u8>, Fault> 
     let params = Params {
         width: view.size[0],
         height: view.size[1],
-        view: view.view.map_or(defaults.view, Into::into),
+        view: view.from.map_or(defaults.view, Into::into),
         up: view.up.map_or(defaults.up, Into::into),
         projection: if view.parallel { Projection::Orthographic } else { defaults.projection },
         color,

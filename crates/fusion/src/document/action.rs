@@ -26,7 +26,6 @@ pub(super) const VERBS: [&str; 11] = [
 /// What a step does: an operation with its options.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-#[expect(clippy::large_enum_variant, reason = "documents hold few")]
 pub enum Action {
     /// See [`Blend`].
     Blend(Blend),

@@ -29,26 +29,23 @@ impl Document {
             self.text.parse().map_err(|e: toml_edit::TomlError| Error::about(name, e.message()))?;
         let value: toml_edit::Value = value.parse().unwrap_or_else(|_| value.into());
         let numbered = name.split_once('.').and_then(|(n, option)| Some((n.parse::<usize>().ok()?, option)));
-        match numbered {
-            Some((number, option)) => {
-                let steps = edited.get_mut("step").and_then(Item::as_array_of_tables_mut);
-                let count = steps.as_ref().map_or(0, |s| s.len());
-                let step = steps.zip(number.checked_sub(1)).and_then(|(steps, i)| steps.get_mut(i));
-                let step = step.ok_or_else(|| {
-                    Error::about(name, format!("there is no step {number}")).remedy(format!("steps are 1 to {count}"))
-                })?;
-                put(step, option, value);
-            }
-            None => {
-                let known = edited.get_mut("parameters").and_then(Item::as_table_like_mut);
-                let place = known.filter(|table| table.contains_key(name)).ok_or_else(|| {
-                    let told = Error::about(name, format!("there is no parameter `{name}`"));
-                    told.instead_of(name, self.parameters.keys().map(String::as_str))
-                })?;
-                replace(place, name, value);
-            }
+        if let Some((number, option)) = numbered {
+            let steps = edited.get_mut("step").and_then(Item::as_array_of_tables_mut);
+            let count = steps.as_ref().map_or(0, |s| s.len());
+            let step = steps.zip(number.checked_sub(1)).and_then(|(steps, i)| steps.get_mut(i));
+            let step = step.ok_or_else(|| {
+                Error::about(name, format!("there is no step {number}")).remedy(format!("steps are 1 to {count}"))
+            })?;
+            put(step, option, value);
+        } else {
+            let known = edited.get_mut("parameters").and_then(Item::as_table_like_mut);
+            let place = known.filter(|table| table.contains_key(name)).ok_or_else(|| {
+                let told = Error::about(name, format!("there is no parameter `{name}`"));
+                told.instead_of(name, self.parameters.keys().map(String::as_str))
+            })?;
+            replace(place, name, value);
         }
-        self.replace(edited.to_string())
+        self.replace(&edited.to_string())
     }
 
     /// Adds a part.
@@ -105,11 +102,11 @@ impl Document {
 
     fn push(&mut self, one: &One) -> Result<(), Error> {
         let text = toml::to_string(one).map_err(|e| Error::about("", e.to_string()))?;
-        self.replace(format!("{}\n{text}", self.text))
+        self.replace(&format!("{}\n{text}", self.text))
     }
 
-    fn replace(&mut self, text: String) -> Result<(), Error> {
-        *self = Self::parse(&text)?;
+    fn replace(&mut self, text: &str) -> Result<(), Error> {
+        *self = Self::parse(text)?;
         Ok(())
     }
 }

@@ -61,7 +61,9 @@ fn put_bytes(out: &mut Vec<u8>, bytes: &[u8]) {
 }
 
 fn put_floats(out: &mut Vec<u8>, numbers: &[f64]) {
-    numbers.iter().for_each(|x| out.extend_from_slice(&x.to_bits().to_le_bytes()));
+    for x in numbers {
+        out.extend_from_slice(&x.to_bits().to_le_bytes());
+    }
 }
 
 fn put_ids(out: &mut Vec<u8>, ids: impl ExactSizeIterator<Item = u32>) {
@@ -164,7 +166,9 @@ fn put_origins(out: &mut Vec<u8>, origins: &Origins) {
 
 fn put_kind(out: &mut Vec<u8>, kind: u8, ids: &[u32]) {
     out.push(kind);
-    ids.iter().for_each(|id| out.extend_from_slice(&id.to_le_bytes()));
+    for id in ids {
+        out.extend_from_slice(&id.to_le_bytes());
+    }
 }
 
 /// What is left to read. Everything is checked against it, so that no count asks for more memory than there are bytes.
@@ -227,6 +231,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Something, or nothing, or `None` for what can be neither.
+    #[expect(clippy::option_option, reason = "the outer one is the end of the bytes, as everywhere here")]
     fn some<T>(&mut self, read: impl FnOnce(&mut Self) -> Option<T>) -> Option<Option<T>> {
         match self.byte()? {
             0 => Some(None),

@@ -241,14 +241,13 @@ impl Run<'_> {
         self.watch.step(verb, 0.0)?;
         let known = self.cache.get(&key);
         let is_known = known.is_some();
-        let entry = match known {
-            Some(entry) => entry,
-            None => {
-                let Outcome { model, origins, report } = task.run(self.precision, self.watch)?;
-                let entry = Arc::new(Entry { model: Arc::new(model), origins, report });
-                self.cache.put(key, &entry);
-                entry
-            }
+        let entry = if let Some(entry) = known {
+            entry
+        } else {
+            let Outcome { model, origins, report } = task.run(self.precision, self.watch)?;
+            let entry = Arc::new(Entry { model: Arc::new(model), origins, report });
+            self.cache.put(key, &entry);
+            entry
         };
         let parts: Vec<&dyn Faces> = self.parts.iter().map(|m| &m.mesh as &dyn Faces).collect();
         let stages: Vec<Stage<'_>> =
@@ -290,12 +289,11 @@ impl Run<'_> {
             }
         }
         report.describe(&shape.model.mesh, &shape.origins);
-        report.validity = match shape.validity {
-            Some(validity) => validity,
-            None => {
-                let format = self.precision.into();
-                as_written(&shape.model, &shape.origins, &[], format, Promise::Manifold, self.watch)?
-            }
+        report.validity = if let Some(validity) = shape.validity {
+            validity
+        } else {
+            let format = self.precision.into();
+            as_written(&shape.model, &shape.origins, &[], format, Promise::Manifold, self.watch)?
         };
         Ok(Outcome { model: (*shape.model).clone(), origins: (*shape.origins).clone(), report })
     }

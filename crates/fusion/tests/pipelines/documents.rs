@@ -1,11 +1,12 @@
 //! Documents evaluated: names, edits, results kept.
 
 use fusion::Error;
-use fusion::document::{Cache, Document, Evaluation, Given, Precisions};
+use fusion::document::{Cache, Document, Evaluation, Given, Output, Precisions};
 use fusion::mesh_core::{FaceOrigin, VertexOrigin, Watch, bounds, shapes, volume};
 use fusion::operation::{Blend, Boolean, Cut, Linked, Plane, Pose, Precision, SetOperation};
 use glam::DVec3;
 use mesh_io::Model;
+use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -41,7 +42,8 @@ pub fn bytes(made: &Result<Evaluation, Error>) -> String {
         let mut report = outcome.report.clone();
         report.stages.iter_mut().for_each(|s| s.milliseconds = 0.0);
         let model = &outcome.model;
-        text += &format!("{places:?} {:?} {:?} {:?} {report:?}\n", model.mesh.faces, model.uvs, outcome.origins);
+        let rest = (&model.mesh.faces, &model.uvs, &outcome.origins);
+        writeln!(text, "{places:?} {rest:?} {report:?}").unwrap();
     }
     text
 }
@@ -116,7 +118,7 @@ fn anything_follows_anything() {
         of = \"tool\"
         file = \"tool.stl\"
     ";
-    let text = format!("version = 2\n{}", text);
+    let text = format!("version = 2\n{text}");
     let document = Document::parse(&text).unwrap();
     assert_eq!(document.unused_parameters(), ["unused"]);
     assert_eq!(document.left_over(), ["same"]);
@@ -285,7 +287,7 @@ fn each_output_survives_its_own_format() {
         "{CUBES}[[step]]\ndo = \"union\"\nradius = 0.1\n[[output]]\nfile = \"a.off\"\n[[output]]\nfile = \"a.stl\"\n"
     );
     let document = Document::parse(&format!("version = 2\n{text}")).unwrap();
-    assert_eq!(document.outputs().iter().map(|o| o.precision()).collect::<Vec<_>>(), [Precision::F64, Precision::F32]);
+    assert_eq!(document.outputs().iter().map(Output::precision).collect::<Vec<_>>(), [Precision::F64, Precision::F32]);
     let made = evaluate(&document, &Cache::default()).unwrap();
     assert!(made.outputs.iter().all(|o| o.outcome.report.validity.self_intersections == Some(0)));
 }

@@ -37,7 +37,7 @@ impl Random {
 fn document_of(steps: &[(usize, f64)]) -> String {
     let mut text = format!("version = 2\n{CUBES}[[part]]\nname = \"c\"\nmesh = \"ball.off\"\nscale = 0.4\n");
     for &(kind, x) in steps {
-        text += &match kind {
+        let step = match kind {
             0 => format!("[[step]]\ndo = \"pose\"\nof = \"b\"\ntranslate = [{x:?}, 0.031, 0.017]\n"),
             1 => format!("[[step]]\ndo = \"union\"\nof = [\"a\", \"b\"]\nnear = [[{x:?}, 0, 0]]\n"),
             2 => format!("[[step]]\ndo = \"difference\"\nof = [\"a\", \"c\"]\nlonger = {x:?}\n"),
@@ -46,6 +46,7 @@ fn document_of(steps: &[(usize, f64)]) -> String {
             ),
             _ => format!("[[step]]\ndo = \"pose\"\nof = \"c\"\nscale = {:?}\nas = \"d\"\n", 1.0 + x),
         };
+        text.push_str(&step);
     }
     text + "[[output]]\nof = \"a\"\nfile = \"a.off\"\n[[output]]\nof = \"c\"\nfile = \"c.stl\"\n"
 }
@@ -177,10 +178,10 @@ fn a_cancelled_evaluation_keeps_only_whole_steps() {
         let handle: Arc<std::sync::OnceLock<Watch>> = Arc::default();
         let inner = Arc::clone(&handle);
         let watch = Watch::new(move |_, _| {
-            if left.fetch_sub(1, std::sync::atomic::Ordering::Relaxed) == 1 {
-                if let Some(watch) = inner.get() {
-                    watch.cancel();
-                }
+            if left.fetch_sub(1, std::sync::atomic::Ordering::Relaxed) == 1
+                && let Some(watch) = inner.get()
+            {
+                watch.cancel();
             }
         });
         let _ = handle.set(watch.clone());
