@@ -1,6 +1,6 @@
 //! What a mesh carries beside vertices and faces: texture coordinates, normals, colours, groups, materials, polygons.
 
-use crate::arrays::{attribute, column, cube};
+use crate::columns::{attribute, column, cube};
 use crate::failure::bad_input;
 use fusion::mesh_core::VertexId;
 use fusion::mesh_io::{Groups, Material, Materials, Model, Polygons, Texture, TextureSource};

@@ -16,6 +16,7 @@
 //! | `operations.rs` | operations by name |
 //! | `job.rs` | one job: its threads, progress, Ctrl-C |
 //! | `arrays.rs`, `attributes.rs` | meshes from arrays and back, with their attributes |
+//! | `columns.rs` | arrays of one kind of value |
 //! | `origins.rs` | origins as columns |
 //! | `listing.rs` | measures and feature curves |
 //! | `picture.rs` | still pictures |
@@ -26,6 +27,8 @@
 mod arrays;
 #[cfg(feature = "extension")]
 mod attributes;
+#[cfg(feature = "extension")]
+mod columns;
 #[cfg(feature = "extension")]
 mod failure;
 #[cfg(feature = "extension")]

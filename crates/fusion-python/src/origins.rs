@@ -1,6 +1,6 @@
 //! Origins as columns, of which the package makes structured arrays.
 
-use crate::arrays::{column, table};
+use crate::columns::{column, table};
 use fusion::mesh_core::{FaceOrigin, Origins, VertexOrigin};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -1,6 +1,7 @@
 //! Why a pipeline gives no result.
 
-use crate::{Invalid, blend, choice, compose, cut, document, operation, sharpen};
+use crate::document::Error as DocumentError;
+use crate::{Invalid, blend, choice, compose, cut, operation, sharpen};
 use glam::DVec3;
 use mesh_core::{Cancelled, NotManifold};
 use tri_intersect::EmbedError;
@@ -68,7 +69,7 @@ pub enum Error {
     Remesh(#[from] remesh::Error),
     /// A document asks for what is not there.
     #[error(transparent)]
-    Document(#[from] document::Error),
+    Document(#[from] DocumentError),
     /// A step of a document failed.
     #[error("{name}: {source}")]
     Step {
