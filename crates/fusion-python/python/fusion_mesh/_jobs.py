@@ -42,7 +42,8 @@ SCHEMA = pa.schema(
 def open_place(place: str) -> tuple[pafs.FileSystem, str]:
     """The file system and the path of a local path or of an address such as ``s3://bucket/path``."""
     if "://" in place:
-        return pafs.FileSystem.from_uri(place)
+        system, path = pafs.FileSystem.from_uri(place)
+        return system, str(path)
     return pafs.LocalFileSystem(), os.path.abspath(place)
 
 
@@ -67,7 +68,8 @@ def parse(text: bytes, name: str) -> list[dict[str, Any]]:
     ValueError
         With every line that cannot be used.
     """
-    jobs, faults, seen = [], [], {}
+    jobs, faults = [], []
+    seen: dict[str, int] = {}
     for number, line in enumerate(text.removeprefix(b"\xef\xbb\xbf").split(b"\n"), 1):
         if not line.strip():
             continue
@@ -188,7 +190,7 @@ class Parts:
             return set()
         if self._parquet:
             return set(ds.dataset(parts, filesystem=self._system).to_table(columns=["id"])["id"].to_pylist())
-        done = set()
+        done: set[str] = set()
         for part in parts:
             with self._system.open_input_stream(part) as stream:
                 done.update(json.loads(line)["id"] for line in stream.read().splitlines())

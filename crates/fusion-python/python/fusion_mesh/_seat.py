@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import queue
@@ -105,7 +106,7 @@ class Seat:
             answers.put(None)
 
         def read_words() -> None:
-            assert process.stderr is not None
+            assert isinstance(process.stderr, io.BufferedReader)
             while said := process.stderr.read1(4096):
                 words.extend(said)
                 del words[:-2000]
@@ -179,7 +180,7 @@ def as_object(text: bytes) -> dict[str, Any]:
 
 def failure(id: str, state: str, code: int, name: str, message: str, remedy: str | None, milliseconds: float) -> dict[str, Any]:
     """A line of the results for a job that has no more to tell than one sentence."""
-    told = {"code": name, "severity": "error", "message": message, "at": None, "numbers": {}, "remedy": remedy}
+    told: dict[str, Any] = {"code": name, "severity": "error", "message": message, "at": None, "numbers": {}, "remedy": remedy}
     return {
         "id": id,
         "state": state,

@@ -122,7 +122,8 @@ def _sweep(place: str, prefix: str) -> None:
 
 def _all(task: Any, jobs: list[dict[str, Any]], where: tuple[str, str, str, Terms]) -> Any:
     """Outcomes as they come, with few more tasks under way than there are CPUs."""
-    waiting, pending = iter(jobs), {}
+    waiting = iter(jobs)
+    pending: dict[Any, dict[str, Any]] = {}
     while True:
         room = 8 + int(4 * ray.cluster_resources().get("CPU", 1))
         while len(pending) < room and (job := next(waiting, None)) is not None:
