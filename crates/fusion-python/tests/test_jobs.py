@@ -120,7 +120,7 @@ def test_memory_and_files_stay_over_a_thousand_unions(boxes):
     unions(800)
     grown = resident() - before
     assert grown < 8 << 20, f"{grown / 2**20:.1f} MiB more"
-    assert len(os.listdir("/proc/self/fd")) == files
+    assert len(os.listdir("/proc/self/fd")) <= files
 
 
 def test_results_own_their_memory():
