@@ -1,66 +1,36 @@
-//! One document from its file to its outputs, without a session: what the batch door runs.
+//! One document to its outputs, without a session: what the batch door runs.
 
-use crate::evaluation::{CACHE_LIMIT, cache as keep, failure, folder, read, read_text, told, whole};
+use crate::evaluation::{CACHE_LIMIT, cache as keep, failure, folder, told, whole};
 use crate::failure::Failure;
 use crate::output::{Outputs, make_folder};
 use crate::session::unwritable;
 use fusion::document::{Document, Precisions};
 use fusion::mesh_core::Watch;
 use mesh_io::{AtomicFiles, Format};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// What a job made.
-#[derive(Debug)]
-pub(crate) struct JobResult {
-    /// The files that were written, in the order of the document's outputs.
-    #[expect(dead_code, reason = "workers list their folder, side files with it")]
-    pub(crate) outputs: Vec<PathBuf>,
-    /// The report, as `run --report` writes it.
-    pub(crate) report: serde_json::Value,
-}
-
-/// Reads a document, sets its parameters, evaluates it, and writes all its outputs or none: into `output_folder`, where only
-/// their file names count, or beside the document. The folder is made where there is none. Results are kept in the folder `cache`, and taken from there.
+/// Evaluates a document that stands at `path`, or could, and writes all its outputs or none: into `output_folder`, where only
+/// their file names count. The folder is made where there is none. Results are kept in the folder `cache`, and taken from there.
+/// Gives the report, as `run --report` writes it.
 ///
 /// # Errors
 /// [`Failure`] with its exit code.
 pub(crate) fn job(
-    document: &Path,
-    sets: &[(String, String)],
-    output_folder: Option<&Path>,
+    document: &Document,
+    path: &Path,
+    output_folder: &Path,
     cache: Option<&Path>,
     watch: &Watch,
-) -> Result<JobResult, Failure> {
-    finish(&read(document, sets)?, document, output_folder, cache, watch)
-}
-
-/// The same for the text of a document, whose paths are relative to the folder of the path by which it is told of.
-pub(crate) fn job_of_text(
-    text: &str,
-    document: &Path,
-    sets: &[(String, String)],
-    output_folder: Option<&Path>,
-    cache: Option<&Path>,
-    watch: &Watch,
-) -> Result<JobResult, Failure> {
-    finish(&read_text(text, document, sets)?, document, output_folder, cache, watch)
-}
-
-fn finish(
-    read: &Document,
-    document: &Path,
-    output_folder: Option<&Path>,
-    cache: Option<&Path>,
-    watch: &Watch,
-) -> Result<JobResult, Failure> {
-    let outputs = places(read, document, output_folder)?;
+) -> Result<Value, Failure> {
+    let outputs = places(document, path, Some(output_folder))?;
     let formats = outputs.iter().map(|path| Format::from_path(path).map_err(Failure::unreadable));
     let formats = formats.collect::<Result<Vec<_>, _>>()?;
-    let made = read
-        .evaluate(folder(document), &keep(cache, CACHE_LIMIT), Precisions::ByFile, watch)
-        .map_err(|e| failure(document, &e))?;
+    let made = document
+        .evaluate(folder(path), &keep(cache, CACHE_LIMIT), Precisions::ByFile, watch)
+        .map_err(|e| failure(path, &e))?;
     watch.step("write", 0.0).map_err(|_| Failure::cancelled())?;
-    output_folder.map_or(Ok(()), make_folder)?;
+    make_folder(output_folder)?;
     Outputs::default().commit_after(|| {
         let mut staged = AtomicFiles::default();
         for ((path, format), output) in outputs.iter().zip(formats).zip(&made.outputs) {
@@ -68,8 +38,7 @@ fn finish(
         }
         staged.commit().map(drop).map_err(unwritable)
     })?;
-    let report = told(&whole(read, document, &made), &made, &outputs);
-    Ok(JobResult { outputs, report })
+    Ok(told(&whole(document, path, &made), &made, &outputs))
 }
 
 /// Where a document's outputs go: as it says, or into a folder by their file names. No two may go to the same place.

@@ -42,12 +42,6 @@ mod text_file;
 mod verbs;
 mod watched;
 
-/// The same by the name that other doors know.
-#[allow(unused_imports, reason = "for the batch door")]
-pub(crate) mod document {
-    pub(crate) use crate::job::{JobResult, job};
-}
-
 use args::{Cli, Verb, with_bare_weld};
 use clap::FromArgMatches;
 use failure::Failure;

@@ -143,39 +143,15 @@ impl Session {
         files: Vec<(PathBuf, Vec<u8>)>,
         report: &Report,
     ) -> Result<(), Failure> {
-        self.watch().step("write", 0.0).map_err(|_| Failure::cancelled())?;
-        self.check_strict(report)?;
-        let report = &self.with_reading(report);
-        let mut outputs = Outputs::default();
-        for (path, bytes) in files {
-            outputs.add(path, bytes);
-        }
-        if let Some((path, origins)) = target.origins.as_ref().zip(origins) {
-            outputs.add(path, fusion::origins_to_json(origins).into_bytes());
-        }
-        self.add_report(&mut outputs, report);
-        let written = match &target.place {
-            None => mesh_io::to_bytes(model, target.format)
-                .map_err(unwritable)
-                .and_then(|bytes| outputs.commit_after(|| output::stream(&bytes))),
-            Some(path) => {
-                outputs.commit_after(|| mesh_io::write_as(model, path, target.format).map(drop).map_err(unwritable))
-            }
-        };
-        written.map(|()| self.tell_stages(report))
+        let origins = target.origins.as_ref().zip(origins);
+        let origins = origins.map(|(path, origins)| (path.clone(), fusion::origins_to_json(origins).into_bytes()));
+        let files = files.into_iter().chain(origins).collect();
+        self.write_several(&[(target, model)], files, report, Report::to_json)
     }
 
     /// Writes files other than meshes, and the report, all or none.
     pub fn write_files(&self, files: Vec<(PathBuf, Vec<u8>)>, report: &Report) -> Result<(), Failure> {
-        self.watch().step("write", 0.0).map_err(|_| Failure::cancelled())?;
-        self.check_strict(report)?;
-        let report = &self.with_reading(report);
-        let mut outputs = Outputs::default();
-        for (path, bytes) in files {
-            outputs.add(path, bytes);
-        }
-        self.add_report(&mut outputs, report);
-        outputs.commit_after(|| Ok(())).map(|()| self.tell_stages(report))
+        self.write_several(&[], files, report, Report::to_json)
     }
 
     /// Writes several meshes and further files, and a report of all, made by `told` from one with the time of reading; all or none.
@@ -226,12 +202,6 @@ impl Session {
             report.stages.insert(0, Stage { name: "read".into(), milliseconds });
         }
         report
-    }
-
-    fn add_report(&self, outputs: &mut Outputs, report: &Report) {
-        if let Some(path) = &self.common.report {
-            outputs.add(path, report.to_json().into_bytes());
-        }
     }
 
     fn tell_stages(&self, report: &Report) {

@@ -1,6 +1,7 @@
 //! Geometry detail: a smooth region gets the detail of others (\[Lin2008\] §4.2).
 
-use crate::outcome::{Outcome, Promise};
+use crate::outcome::Outcome;
+use crate::validity::Promise;
 use crate::validity::as_written;
 use crate::{Counts, Error, Region, Report, extent};
 use detail_transfer::{Exemplar, Transferred, roughness, transfer};

@@ -69,6 +69,7 @@
 //! | `remeshing.rs`, `region.rs` | remeshing of a surface or a region of it; regions |
 //! | `repair.rs` | welding, orientation, taking apart |
 //! | `info.rs` | counts, measures and defects of one mesh |
+//! | `listing.rs` | feature curves as every door lists them |
 //! | `choice.rs` | which curves are blended |
 //! | `picks.rs` | curves through picked points |
 //! | `attributes.rs`, `spread.rs` | attributes carried from inputs to the result, colours blended over new surfaces |
@@ -90,6 +91,7 @@ mod error;
 mod extent;
 mod info;
 pub mod join;
+mod listing;
 mod metrics;
 pub mod operation;
 mod origins_json;
@@ -117,6 +119,7 @@ pub use drawings::drawings_to_files;
 pub use error::Error;
 pub use info::{Defect, Info, Loop};
 pub use join::join;
+pub use listing::{ListedCurve, convexity_word, list_curves};
 pub use mesh_core;
 pub use mesh_io;
 pub use origins_json::{origins_to_json, parts_of_faces};

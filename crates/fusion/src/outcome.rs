@@ -2,7 +2,7 @@
 
 use crate::blend;
 use crate::diagnostic::Diagnostic;
-use crate::validity::as_written;
+use crate::validity::{Promise, as_written};
 use crate::{Error, Invalid, Report, carry};
 use mesh_core::{Connected, Origins, TriMesh, Watch};
 use mesh_io::{Format, Model};
@@ -16,15 +16,6 @@ pub struct Outcome {
     pub origins: Origins,
     /// What was done.
     pub report: Report,
-}
-
-/// What a result is promised to be, beside free of self-intersections in what was changed.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Promise {
-    /// Oriented and 2-manifold, with this many boundary loops: closed if none.
-    Openings(usize),
-    /// Oriented and 2-manifold.
-    Manifold,
 }
 
 /// What a result was made from.

@@ -1,6 +1,7 @@
 //! Smooths and remeshes a surface, or a region of it, and checks that it does not meet itself.
 
-use crate::outcome::{Outcome, Promise};
+use crate::outcome::Outcome;
+use crate::validity::Promise;
 use crate::validity::as_written;
 use crate::{Counts, Error, Region, Report, carry, extent};
 use glam::DVec3;

@@ -1,12 +1,20 @@
 //! Whether a result is sound in the coordinates that a file will hold.
 
-use crate::outcome::Promise;
 use crate::{Error, Validity};
 use glam::DVec3;
 use mesh_core::{Connected, FaceId, FaceOrigin, Faces, NotManifold, Origins, TriMesh, Watch, boundary_loops, validate};
 use mesh_io::{Format, Model};
 use rayon::prelude::*;
 use tri_intersect::self_intersections_among;
+
+/// What a result is promised to be, beside free of self-intersections in what was changed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Promise {
+    /// Oriented and 2-manifold, with this many boundary loops: closed if none.
+    Openings(usize),
+    /// Oriented and 2-manifold.
+    Manifold,
+}
 
 /// A result that is not sound.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

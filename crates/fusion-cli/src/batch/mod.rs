@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `outcome.rs` | what became of a job, as a line of the results |
+//! | `outcome.rs` | the outcome of a job, as a line of the results |
 //! | `results.rs` | the file of results: locked, only appended to, cut where a line is torn |
 //! | `folders.rs` | where jobs write: folders beside, renamed at the end |
 //! | `shard.rs` | the part of the jobs that one machine takes |

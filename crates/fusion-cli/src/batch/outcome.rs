@@ -1,4 +1,4 @@
-//! What became of a job, as a line of the results.
+//! The outcome of a job, as a line of the results.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};

@@ -38,7 +38,7 @@ struct Desk {
     failure: Option<Failure>,
 }
 
-/// Does all jobs, in their order where there is one worker; gives what became of each as far as it came, and what stopped it.
+/// Does all jobs, in their order where there is one worker; gives the outcome of each that ended, and what stopped the batch.
 pub fn run(
     plan: &Plan,
     results: Results,
@@ -85,7 +85,7 @@ fn one(
     let folder = &request.folder;
     let mut outcome = match outcome {
         Ok(Some(outcome)) => outcome,
-        // The folder of a job that is not counted is no more than a trace.
+        // The job is not counted, so a folder that cannot be removed does no harm.
         ended => return std::fs::remove_dir_all(folder).map_err(cannot).and(ended.map(drop)),
     };
     // Between the two renamings that end a job, Ctrl-C waits.
@@ -102,7 +102,7 @@ fn one(
     let mut desk = desk.lock().unwrap_or_else(PoisonError::into_inner);
     desk.results.append(&outcome)?;
     desk.meter.step(if outcome.state == State::Done { Step::Done } else { Step::Failed });
-    // The table at the end needs no more than this.
+    // All that the table at the end needs.
     let (figures, outputs) = (serde_json::Map::new(), vec![]);
     desk.ended.push(Outcome { figures, outputs, inputs: vec![], ..outcome });
     Ok(())

@@ -44,7 +44,7 @@ struct Worker {
     last_words: Receiver<String>,
 }
 
-/// Why a worker is no more.
+/// Why a worker has ended.
 enum End {
     Answer(String),
     Gone,
@@ -158,7 +158,7 @@ impl Worker {
         }
     }
 
-    /// Ends it, unless it goes by itself within `grace`. Gives its exit code, how it ended, and what it said last.
+    /// Waits for it to exit within `grace`, then kills it. Gives its exit code, how it ended, and what it said last.
     fn end(self, grace: Duration) -> (i32, String, String) {
         let Self { mut child, requests, last_words, .. } = self;
         drop(requests);
@@ -182,7 +182,7 @@ fn ending(status: ExitStatus) -> (i32, String) {
         return (128 + signal, format!("was ended by signal {signal}"));
     }
     let code = status.code().unwrap_or(1);
-    (code, format!("ended by itself with exit code {code}"))
+    (code, format!("exited with code {code}"))
 }
 
 fn lines(out: ChildStdout) -> Receiver<String> {

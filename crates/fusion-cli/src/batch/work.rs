@@ -2,8 +2,9 @@
 
 use crate::batch::folders::list;
 use crate::batch::outcome::{Outcome, State, error};
+use crate::evaluation::{folder, read, read_text};
 use crate::failure::Failure;
-use crate::job::{job, job_of_text};
+use crate::job::job;
 use crate::job_line::{Document, Job};
 use fusion::mesh_core::Watch;
 use serde::{Deserialize, Serialize};
@@ -38,7 +39,7 @@ pub fn serve(cache: Option<&Path>, watch: &Watch) -> Result<(), Failure> {
     });
     for line in requests {
         let request: Request = serde_json::from_str(&line)
-            .map_err(|e| Failure::unreadable(format!("a worker was sent what is no request: {e}")))?;
+            .map_err(|e| Failure::unreadable(format!("a worker was sent a malformed request: {e}")))?;
         let outcome = answer(&request, cache, watch);
         let mut out = std::io::stdout().lock();
         let told = out.write_all(outcome.line().as_bytes()).and_then(|()| out.flush());
@@ -95,29 +96,23 @@ fn evaluate(
     watch: &Watch,
     inputs: &mut Vec<String>,
 ) -> Result<Value, Failure> {
-    let (sets, folder) = (request.job.sets(), Some(request.folder.as_path()));
-    let text = match &request.job.document {
+    let sets = request.job.sets();
+    let in_line = request.base.join("(document)");
+    let (document, path) = match &request.job.document {
         Document::File(path) => {
             let path = request.base.join(path);
-            if let Ok(text) = std::fs::read_to_string(&path) {
-                *inputs = parts(&text, path.parent().unwrap_or(Path::new("")));
-            }
-            return job(&path, &sets, folder, cache, watch).map(|result| result.report);
+            (read(&path, &sets)?, path)
         }
-        Document::Text(text) => text.clone(),
+        Document::Text(text) => (read_text(text, &in_line, &sets)?, in_line),
         Document::Object(table) => {
-            toml::to_string(table).map_err(|e| Failure::unreadable(format!("the document is no table: {e}")))?
+            let text = toml::to_string(table)
+                .map_err(|e| Failure::unreadable(format!("the document cannot be written as TOML: {e}")))?;
+            (read_text(&text, &in_line, &sets)?, in_line)
         }
     };
-    *inputs = parts(&text, &request.base);
-    job_of_text(&text, &request.base.join("(document)"), &sets, folder, cache, watch).map(|result| result.report)
-}
-
-/// The meshes that a document names as its parts.
-fn parts(text: &str, folder: &Path) -> Vec<String> {
-    let Ok(table) = text.parse::<toml::Table>() else { return vec![] };
-    let parts = table.get("part").and_then(toml::Value::as_array).into_iter().flatten();
-    parts.filter_map(|p| p.get("mesh")?.as_str()).map(|mesh| folder.join(mesh).display().to_string()).collect()
+    let file = |part: &fusion::document::Part| folder(&path).join(&part.mesh).display().to_string();
+    *inputs = document.parts().iter().map(file).collect();
+    job(&document, &path, &request.folder, cache, watch)
 }
 
 /// What the report of a document tells.

@@ -60,7 +60,7 @@ pub struct BatchArgs {
 }
 
 const AFTER_HELP: &str = "\
-The exit code is 0 once every job has a line, whatever became of it; with --strict it is 4 if a job is not done or told a warning.";
+The exit code is 0 once every job has a line, whatever its outcome; with --strict it is 4 if a job is not done or told a warning.";
 
 /// Does the jobs that are not done.
 pub fn run(session: &Session, args: &BatchArgs) -> Result<(), Failure> {

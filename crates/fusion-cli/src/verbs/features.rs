@@ -4,13 +4,12 @@ use crate::args::Features as Args;
 use crate::failure::Failure;
 use crate::output::{check_writable, print};
 use crate::session::{Session, counts};
-use fusion::Report;
 use fusion::blend::ListedRadius;
-use fusion::features::point_within;
-use fusion::features::{Convexity, FeatureCurve, Params, feature_curves};
-use fusion::mesh_core::{Connected, Positions, TriMesh};
+use fusion::features::{FeatureCurve, Params, feature_curves, point_within};
+use fusion::mesh_core::{Connected, TriMesh};
 use fusion::round::max_radius_of_each;
-use serde_json::{Value, json};
+use fusion::{Report, convexity_word, list_curves};
+use serde_json::json;
 use std::fmt::Write;
 
 /// Lists the feature curves of one mesh.
@@ -31,12 +30,7 @@ pub fn run(session: &Session, args: &Args) -> Result<(), Failure> {
             .map_err(|e| Failure::of(&e, e.to_string()))?
     };
     let json = || {
-        let list: Vec<_> = curves
-            .iter()
-            .zip(&limits)
-            .enumerate()
-            .map(|(id, (c, limit))| to_json(&mesh, id, c, limit.as_ref()))
-            .collect();
+        let list = list_curves(&mesh, &curves, &limits);
         format!("{:#}\n", json!({ "version": 1, "angle": args.angle, "curves": list }))
     };
     let files = args.output.iter().map(|path| (path.clone(), json().into_bytes())).collect();
@@ -52,7 +46,7 @@ fn table(mesh: &Connected<TriMesh>, curves: &[FeatureCurve], limits: &[Option<Li
     let mut text = String::from("  id  edges        length  turn (degrees)  kind             largest radius  near\n");
     for (id, (curve, limit)) in curves.iter().zip(limits).enumerate() {
         let radius = limit.map_or("-".into(), |l| format!("{}{:.6}", if l.tried { "" } else { "<= " }, l.radius));
-        let kind = format!("{}, {}", convexity(curve), if curve.closed { "closed" } else { "open" });
+        let kind = format!("{}, {}", convexity_word(curve), if curve.closed { "closed" } else { "open" });
         let at = point_within(mesh, curve);
         let turn = format!("{:.1} to {:.1}", curve.angles[0], curve.angles[1]);
         let _ = writeln!(
@@ -66,35 +60,4 @@ fn table(mesh: &Connected<TriMesh>, curves: &[FeatureCurve], limits: &[Option<Li
         );
     }
     text
-}
-
-fn to_json(mesh: &Connected<TriMesh>, id: usize, curve: &FeatureCurve, limit: Option<&ListedRadius>) -> Value {
-    let vertices = curve.vertices(mesh);
-    let points: Vec<_> = vertices.iter().map(|&v| mesh.position(v).to_array()).collect();
-    let mut ends: Vec<[f64; 3]> = vec![];
-    if !curve.closed {
-        ends.extend(points.first().into_iter().chain(points.last()));
-    }
-    json!({
-        "id": id,
-        "length": curve.length,
-        "convexity": convexity(curve),
-        "closed": curve.closed,
-        "angles": curve.angles,
-        "ends": ends,
-        "near": point_within(mesh, curve).to_array(),
-        "max_radius": limit.map(|l| l.radius),
-        "max_radius_tried": limit.map(|l| l.tried),
-        "limited_by": limit.map(|l| l.what),
-        "limited_at": limit.map(|l| l.at.to_array()),
-        "vertices": vertices.iter().map(|v| v.0).collect::<Vec<_>>(),
-        "points": points,
-    })
-}
-
-fn convexity(curve: &FeatureCurve) -> &'static str {
-    match curve.convexity {
-        Convexity::Convex => "convex",
-        Convexity::Concave => "concave",
-    }
 }

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from . import _native
+from ._picture import thumbnail
 from ._types import FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -111,9 +112,7 @@ class Mesh:
         return pyvista.PolyData.from_regular_faces(self.vertices, faces)
 
     def _repr_png_(self) -> bytes:
-        from ._functions import render
-
-        return render(self, size=480)
+        return thumbnail(self)
 
 
 def vertices_from(array: Any, name: str) -> FloatArray:

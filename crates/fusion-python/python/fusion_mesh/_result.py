@@ -14,6 +14,7 @@ import numpy.typing as npt
 from . import _native
 from ._errors import InvalidResultError
 from ._mesh import Mesh
+from ._picture import thumbnail
 from ._types import FloatArray, IntArray, Path
 
 if TYPE_CHECKING:
@@ -122,9 +123,8 @@ class Result:
         return f"<fusion_mesh.Result of {command}: {len(mesh.vertices)} vertices, {len(mesh.faces)} faces>"
 
     def _repr_html_(self) -> str:
-        from ._functions import render
-
-        picture = base64.b64encode(render(self, color="origin", size=480)).decode("ascii")
+        owners = self.origins.faces["part"].tolist()
+        picture = base64.b64encode(thumbnail(self.mesh, "origin", owners)).decode("ascii")
         validity = self.report["validity"]
         milliseconds = sum(stage["milliseconds"] for stage in self.report["stages"])
         rows = {

@@ -137,7 +137,7 @@ class Seat:
                 return lost("crashed", 1, "crashed", said, None)
             if answer is None:
                 code = self._end(process, GRACE)
-                how = f"was ended by signal {-code}" if code < 0 else f"ended by itself with exit code {code}"
+                how = f"was ended by signal {-code}" if code < 0 else f"exited with code {code}"
                 words = bytes(self._last_words).decode(errors="replace").strip()
                 said = f"the worker {how}" + (f": {words}" if words else "")
                 return lost("crashed", 128 - code if code < 0 else code, "crashed", said, "report this document and its parts")

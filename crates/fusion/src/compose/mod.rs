@@ -25,7 +25,8 @@ pub use error::Error;
 pub use silhouette::{Silhouette, SilhouetteCurve, SilhouettePoint};
 pub(crate) use weld::TRANSITION;
 
-use crate::outcome::{Outcome, Promise, finish_as};
+use crate::outcome::{Outcome, finish_as};
+use crate::validity::Promise;
 use crate::{Counts, Report, extent};
 use adjust::adjust;
 use constraints::{constraints, fitting};

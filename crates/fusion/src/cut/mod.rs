@@ -29,7 +29,8 @@ mod smooth;
 
 pub use error::Error;
 
-use crate::outcome::{Outcome, Promise, finish_as};
+use crate::outcome::{Outcome, finish_as};
+use crate::validity::Promise;
 use crate::{Counts, Report, extent};
 use glam::DVec3;
 use keep::{kept_faces, kept_side, submesh};

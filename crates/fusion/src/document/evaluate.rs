@@ -10,7 +10,7 @@ use super::table::Places;
 use super::task::{Place, Task};
 use super::{Document, key};
 use crate::operation::{Pose, Precision};
-use crate::outcome::Promise;
+use crate::validity::Promise;
 use crate::validity::as_written;
 use crate::{Counts, Error, Outcome, Report};
 use mesh_core::{Faces, Origins, Stage, Watch};

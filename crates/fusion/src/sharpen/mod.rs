@@ -14,7 +14,8 @@ mod edge;
 mod rim;
 mod rounding;
 
-use crate::outcome::{Outcome, Promise, finish_as};
+use crate::outcome::{Outcome, finish_as};
+use crate::validity::Promise;
 use crate::{Counts, Error, Report, extent};
 use edge::Edge;
 use glam::DVec3;
