@@ -104,7 +104,7 @@ impl Error {
                 | B::SelfIntersecting { at, .. } => Some(at),
                 _ => None,
             },
-            Self::Blend(blend::Error::DoesNotFit { at, .. }) => Some(*at),
+            Self::Blend(blend::Error::DoesNotFit { at, .. } | blend::Error::MeetsItself { at }) => Some(*at),
             Self::Blend(blend::Error::Keep(refusal)) => Some(refusal.place()),
             Self::Blend(blend::Error::Spine(error)) | Self::Seam(error) => error.place(),
             Self::Blend(blend::Error::Embed(error)) => match error {

@@ -28,6 +28,14 @@ pub enum Error {
         /// The largest of the smaller radii tried that works everywhere.
         workable: Option<f64>,
     },
+    /// The mesh is not sound before anything is blended.
+    #[error(
+        "the mesh meets itself near {at}, beside an edge that is to be blended; mend that first, or blend other edges"
+    )]
+    MeetsItself {
+        /// The middle of a face that does.
+        at: DVec3,
+    },
     /// The blend would have too many vertices.
     #[error(
         "a ball of radius {radius} is too small for these curves: the blend would have some {vertices:.0e} vertices; the least radius is about {least:.1e}"

@@ -17,9 +17,8 @@ pub(crate) fn fill(
     joints: &[Vec<VertexId>],
     stretches: &[Option<Stretch>],
     strips: &[Option<Strip>],
-    first_new: u32,
     position: impl Fn(VertexId) -> DVec3,
-) -> Result<Piece, Trouble> {
+) -> Result<Patch, Trouble> {
     let rim = Rim::around(corner, joints, stretches, strips, &position);
     let n = rim.vertices.len();
     let middle = rim.points.iter().sum::<DVec3>() / n.max(1) as f64;
@@ -34,8 +33,22 @@ pub(crate) fn fill(
         Some((center, radius)) => plate.wrap(center, radius),
         None => plate.settle(&rim.ghosts()),
     }
-    let id = |v: u32| if (v as usize) < n { rim.vertices[v as usize] } else { VertexId(first_new + v - n as u32) };
-    Ok(Piece { points: plate.points[n..].to_vec(), faces: plate.faces.iter().map(|f| f.map(id)).collect() })
+    Ok(Patch { rim: rim.vertices, plate })
+}
+
+/// The patch of a corner.
+pub(crate) struct Patch {
+    rim: Vec<VertexId>,
+    plate: Plate,
+}
+
+impl Patch {
+    /// The patch with ids for its inner vertices.
+    pub fn numbered_from(self, first_new: u32) -> Piece {
+        let n = self.rim.len();
+        let id = |v: u32| self.rim.get(v as usize).copied().unwrap_or_else(|| VertexId(first_new + v - n as u32));
+        Piece { points: self.plate.points[n..].to_vec(), faces: self.plate.faces.iter().map(|f| f.map(id)).collect() }
+    }
 }
 
 /// The closed boundary of a corner patch, counter-clockwise.

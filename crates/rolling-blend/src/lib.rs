@@ -21,6 +21,7 @@
 //! | `stitch.rs` | a swept blend, and the loop that makes the ball smaller where it does not fit |
 //! | `params.rs`, `error.rs` | how curves are blended; why they cannot be |
 //! | `vicinity.rs` | the part of a large mesh that the blend is made on |
+//! | `crossings.rs` | meshes that meet themselves beside a curve |
 //! | `curve_blend.rs`, `measure.rs` | what each curve was blended by; the ball error of the result |
 //! | `auto.rs` | which curves are swept and which are blended as a field |
 //! | `zones/` | the envelope around places where a sweep fails, strips everywhere else |
@@ -51,6 +52,7 @@ mod auto;
 mod blended;
 mod cap;
 mod corner;
+mod crossings;
 mod curve_blend;
 mod dwindle;
 mod ending;
@@ -93,6 +95,7 @@ use rolling::affordable;
 pub use sketch::{Drawing, Sketch, meaning};
 pub use spine::BlendCurve;
 use stitch::{ROUNDS, attempt, explained};
+use trouble::Trouble;
 
 /// Blends `curves` of `mesh`. Vertices outside the blend keep their bits and their order.
 ///
@@ -134,6 +137,13 @@ fn blend_whole(
     if params.surface == Surface::Stitch {
         return attempt(mesh, curves, params, ROUNDS, watch)
             .or_else(|refusal| explained(mesh, curves, params, refusal, watch));
+    }
+    if let Some(at) = crossings::beside(mesh, curves, watch)? {
+        // Where the blend takes the place away, all is well; there is no use in looking for more than that.
+        return attempt(mesh, curves, params, ROUNDS, watch).map_err(|trouble| match trouble {
+            Trouble::Cancelled(c) => c.into(),
+            _ => Error::MeetsItself { at },
+        });
     }
     auto::blend(mesh, curves, params, watch)
 }

@@ -1,7 +1,8 @@
 //! A disc of triangles across a closed polygon in space, bent onto a ball or into a thin plate.
 
 use glam::DVec3;
-use std::collections::HashMap;
+use mesh_operators::{Cholesky, LowerTriangle, SparseRows};
+use rustc_hash::FxHashMap;
 use std::f64::consts::TAU;
 
 /// A disc whose first vertices are the polygon that bounds it, counter-clockwise.
@@ -98,7 +99,7 @@ impl Plate {
     /// Flips inner edges until every pair of triangles has the smaller opposite angles.
     fn flip(&mut self) {
         for _ in 0..20 {
-            let mut sides: HashMap<[u32; 2], usize> = HashMap::new();
+            let mut sides: FxHashMap<[u32; 2], usize> = FxHashMap::default();
             for (f, face) in self.faces.iter().enumerate() {
                 for k in 0..3 {
                     sides.insert([face[k], face[(k + 1) % 3]], f);
@@ -120,6 +121,9 @@ impl Plate {
                     if !taken && angle(c) + angle(d) > std::f64::consts::PI + 1e-9 {
                         self.faces[f] = [c, d, b];
                         self.faces[g] = [d, c, a];
+                        // Or another flip of this sweep could make the same edge again.
+                        sides.insert([c, d], f);
+                        sides.insert([d, c], g);
                         (touched[f], touched[g], any) = (true, true, true);
                     }
                 }
@@ -204,64 +208,35 @@ impl Laplacian {
         Self { rows }
     }
 
-    fn apply(&self, x: &[DVec3], out: &mut [DVec3]) {
-        for (row, out) in self.rows.iter().zip(out) {
-            *out = row.iter().map(|&(v, w)| w * x[v as usize]).sum();
-        }
-    }
-
-    fn apply_transposed(&self, y: &[DVec3], free: &std::ops::Range<usize>, out: &mut [DVec3]) {
-        out.fill(DVec3::ZERO);
-        for (row, &y) in self.rows.iter().zip(y) {
-            for &(v, w) in row.iter().filter(|e| free.contains(&(e.0 as usize))) {
-                out[v as usize] += w * y;
-            }
-        }
-    }
-
-    /// Moves the `free` vertices to where Σ |row · x|² is least: conjugate gradients on the normal equations, scaled by
-    /// their diagonal, to 1e-10 of the first residual.
+    /// Moves the `free` vertices to where Σ |row · x|² is least: one factor of the normal equations, solved twice, the second time for
+    /// what rounding left. Where they have no single solution nothing moves.
     fn minimise(&self, x: &mut [DVec3], free: std::ops::Range<usize>) {
-        let mut diagonal = vec![0.0; x.len()];
+        let n = free.len();
+        let mut columns: Vec<Vec<(u32, f64)>> = vec![vec![]; n];
         for row in &self.rows {
-            for &(v, w) in row {
-                diagonal[v as usize] += w * w;
+            let own = || row.iter().filter(|e| free.contains(&(e.0 as usize)));
+            for &(a, wa) in own() {
+                let below = own().filter(|e| e.0 >= a).map(|&(b, wb)| (b - free.start as u32, wa * wb));
+                columns[a as usize - free.start].extend(below);
             }
         }
-        let mut energy = vec![DVec3::ZERO; self.rows.len()];
-        let mut slope = vec![DVec3::ZERO; x.len()];
-        let mut scaled = vec![DVec3::ZERO; x.len()];
-        self.apply(x, &mut energy);
-        self.apply_transposed(&energy, &free, &mut slope);
-        let mut residual: Vec<DVec3> = slope.iter().map(|g| -*g).collect();
-        let precondition = |r: &[DVec3], out: &mut [DVec3]| {
-            for v in free.clone() {
-                out[v] = r[v] / diagonal[v].max(f64::MIN_POSITIVE);
+        let mut lower = LowerTriangle::default();
+        for mut column in columns {
+            SparseRows::add_up(&mut column);
+            lower.column(&column);
+        }
+        let Ok(factor) = Cholesky::new(&lower) else { return };
+        for _ in 0..2 {
+            let mut slope = vec![DVec3::ZERO; n];
+            for row in &self.rows {
+                let energy: DVec3 = row.iter().map(|&(v, w)| w * x[v as usize]).sum();
+                for &(v, w) in row.iter().filter(|e| free.contains(&(e.0 as usize))) {
+                    slope[v as usize - free.start] -= w * energy;
+                }
             }
-        };
-        precondition(&residual, &mut scaled);
-        let mut direction = scaled.clone();
-        let dot = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(p, q)| p.dot(*q)).sum::<f64>();
-        let mut size = dot(&residual, &scaled);
-        let enough = 1e-20 * size;
-        for _ in 0..20 * free.len() {
-            if size <= enough {
-                break;
+            for (x, step) in x[free.clone()].iter_mut().zip(factor.solve_points(&slope)) {
+                *x += step;
             }
-            self.apply(&direction, &mut energy);
-            self.apply_transposed(&energy, &free, &mut slope);
-            let step = size / dot(&direction, &slope);
-            for v in free.clone() {
-                x[v] += step * direction[v];
-                residual[v] -= step * slope[v];
-            }
-            precondition(&residual, &mut scaled);
-            let next = dot(&residual, &scaled);
-            let turn = next / size;
-            for v in free.clone() {
-                direction[v] = scaled[v] + turn * direction[v];
-            }
-            size = next;
         }
     }
 }

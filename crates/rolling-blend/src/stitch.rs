@@ -18,6 +18,7 @@ use crate::strip::{Fineness, Piece, Strip, sweep};
 use crate::trouble::Trouble;
 use glam::DVec3;
 use mesh_core::{Connected, FaceId, Faces, Positions, TriMesh, VertexId, Watch, centroid};
+use rayon::prelude::*;
 use spine::{BlendCurve, Rail};
 
 /// The error for what stopped a sweep, with a smaller radius that works, if there is one.
@@ -205,12 +206,14 @@ fn fill_corners(
 ) -> Result<Vec<Piece>, Trouble> {
     let cut = &opened.embedded.mesh;
     let first_new = cut.vertex_count();
-    let mut patches = Vec::with_capacity(layout.corners.len());
-    for (corner, joints) in layout.corners.iter().zip(&opened.joints) {
-        let position =
-            |v: VertexId| if v.index() < first_new { cut.position(v) } else { new_points[v.index() - first_new] };
-        let first = (first_new + new_points.len()) as u32;
-        let patch = fill(corner, joints, &layout.stretches, strips, first, position)?;
+    let position =
+        |v: VertexId| if v.index() < first_new { cut.position(v) } else { new_points[v.index() - first_new] };
+    let corners = layout.corners.par_iter().zip(&opened.joints);
+    let filled: Vec<_> =
+        corners.map(|(corner, joints)| fill(corner, joints, &layout.stretches, strips, position)).collect();
+    let mut patches = Vec::with_capacity(filled.len());
+    for patch in filled {
+        let patch = patch?.numbered_from((first_new + new_points.len()) as u32);
         new_points.extend_from_slice(&patch.points);
         sketch.draw(&format!("corner-{}", patches.len()), || piece_of(&patch, cut, new_points));
         patches.push(patch);

@@ -46,9 +46,9 @@ impl Stretch {
         }
     }
 
-    /// Where a linkage is at a station, with a rough normal.
+    /// Where a linkage is at a station, with a rough outward normal of the surface.
     pub fn foot<M: mesh_core::Faces>(&self, mesh: &M, side: usize, k: usize) -> (SurfacePoint, DVec3) {
-        let radial = |s: &Sample| (s.center - s.feet[side].point).normalize_or_zero();
+        let radial = |s: &Sample| self.outwards() * (s.feet[side].point - s.center).normalize_or_zero();
         match self.station(k) {
             Ok(s) => (s.feet[side].surface_point(mesh), radial(s)),
             Err(Ending::Stop(points)) => points[if side == 0 { 0 } else { points.len() - 1 }],

@@ -3,11 +3,12 @@
 use fusion::blend::{Blended, Method, Overlap, Params, blend, max_radius};
 use fusion::features::{self, feature_curves};
 use fusion::{Choice, round};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use mesh_core::{Connected, Faces, Positions, TriMesh, VertexId, VertexOrigin, Watch, shapes, volume};
 use mesh_io::{Format, Model};
 use spine::BlendCurve;
 use std::f64::consts::PI;
+use tri_intersect::Operation;
 
 fn curves(mesh: &Connected<TriMesh>) -> Vec<BlendCurve> {
     let found = feature_curves(mesh, &features::Params::default());
@@ -289,4 +290,29 @@ fn what_cannot_be_rounded_stays_sharp_and_is_told() {
         panic!("a ball of 0.2 does not fit into a plate of 0.12")
     };
     assert!(refusal.to_string().contains("works"), "{refusal}");
+}
+
+/// A plate less hexagonal prisms, one after the other: every edge has vertices along it, where the faces that each left behind met the next.
+fn plate_with_hexagonal_holes() -> Connected<TriMesh> {
+    let mut plate = Connected::new(shapes::cuboid(DVec3::new(6.0, 4.0, 0.6))).unwrap();
+    for at in [[0.6, 0.4], [-0.7, 0.4], [-0.7, -0.8]] {
+        let mut prism = shapes::cylinder(0.4, 0.8, 6, 1);
+        for p in &mut prism.positions {
+            *p = DMat3::from_rotation_z(0.1) * *p + DVec3::new(at[0], at[1], 0.0);
+        }
+        let params = tri_intersect::Params::default();
+        let prism = Connected::new(prism).unwrap();
+        let made = tri_intersect::boolean(&plate, &prism, Operation::Difference, &params, &Watch::default()).unwrap();
+        plate = Connected::new(made.mesh).unwrap();
+    }
+    plate
+}
+
+/// At each corner of a hole two ridges meet a valley, whose balls are on the other side of the surface.
+#[test]
+fn ridges_and_valleys_of_holes_are_swept() {
+    let mesh = plate_with_hexagonal_holes();
+    let done = rounded(&mesh, &curves(&mesh), &Params::new(0.036));
+    // Eight corners of the plate and twelve of each hole, between as many edges and half as many again.
+    assert_eq!((done.strips, done.corners), (12 + 3 * 18, 8 + 3 * 12));
 }
