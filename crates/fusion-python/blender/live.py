@@ -1,0 +1,108 @@
+"""Live objects: jobs that are started when a source changes, cancelled by newer changes, and put into the result."""
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from . import build, problems, snapshot
+from .engine import Job
+
+_pending = {}
+_jobs = {}
+
+
+def is_live(thing):
+    """Whether an object follows sources."""
+    return thing.fusion.kind != "NONE" and thing.fusion.is_live
+
+
+def request(thing):
+    """Asks for a live object to be made again."""
+    _pending[thing.session_uid] = True
+
+
+def is_busy():
+    """Whether anything is to be done."""
+    return bool(_pending or _jobs)
+
+
+def progress():
+    """Stage and share of the job that was started last; None if there is none."""
+    job = next(reversed(_jobs.values()), None)
+    return None if job is None else (job[0].stage, job[0].share)
+
+
+def pump():
+    """Starts what is asked for and takes in what is done. Called on the main thread; never waits."""
+    for uid in list(_pending):
+        del _pending[uid]
+        thing = _by_uid(uid)
+        if thing is not None and thing.fusion.kind != "NONE":
+            _start(thing)
+    for uid, (job, taken) in list(_jobs.items()):
+        if job.is_done:
+            del _jobs[uid]
+            thing = _by_uid(uid)
+            if thing is not None:
+                _finish(thing, job, taken)
+
+
+def complete():
+    """Waits until every live object is up to date."""
+    while is_busy():
+        pump()
+        for job, _ in list(_jobs.values()):
+            job.wait()
+
+
+def cancel():
+    """Stops all jobs."""
+    _pending.clear()
+    for job, _ in _jobs.values():
+        job.cancel()
+    _jobs.clear()
+
+
+def _by_uid(uid):
+    return next((thing for thing in bpy.data.objects if thing.session_uid == uid), None)
+
+
+def _start(thing):
+    running = _jobs.pop(thing.session_uid, None)
+    if running is not None:
+        running[0].cancel()
+    thing.fusion.is_stale = False
+    try:
+        taken = snapshot.take(thing)
+    except problems.Problem as problem:
+        problems.show(thing, problem, None)
+        thing.fusion.key = ""
+        return
+    if taken.key == thing.fusion.key:
+        _place(thing, taken.frame)
+        return
+    job = Job(taken.function, taken.stack, taken.options)
+    _jobs[thing.session_uid] = job, taken
+
+
+def _finish(thing, job, taken):
+    if job.error is not None:
+        problem = problems.told(job.error)
+        if problem is not None:
+            problems.show(thing, problem, taken.frame)
+            thing.fusion.key = taken.key
+        return
+    if job.made is None:
+        return
+    if thing.data.users > 1:
+        # A linked duplicate has sources of its own.
+        thing.data = thing.data.copy()
+    build.fill(thing, taken.stack, job.made, thing.fusion.material)
+    thing.fusion.key = taken.key
+    _place(thing, taken.frame)
+    problems.clear(thing, job.made.warnings)
+
+
+def _place(thing, frame):
+    if not np.allclose(np.array(thing.matrix_world), frame, atol=1e-7):
+        thing.matrix_world = Matrix(frame.tolist())
