@@ -89,11 +89,11 @@ def run(function, stack, options, polygons=False, progress=None):
     meshes = [_mesh(fm, stack, number, polygons) for number in range(len(stack.point_offsets) - 1)]
     if function == "max_radius":
         return fm.max_radius(*meshes, progress=progress, **options)
-    with warnings.catch_warnings(record=True) as heard:
-        warnings.simplefilter("always")
+    with warnings.catch_warnings():
+        # They are in the report as well.
+        warnings.simplefilter("ignore")
         result, told = _rounded(fm, getattr(fm, function), meshes, {"progress": progress, **options})
-    told += [str(w.message) for w in heard if issubclass(w.category, fm.FusionWarning)]
-    return _made(result, stack, list(dict.fromkeys(told)))
+    return _made(result, stack, told + result.report["warnings"])
 
 
 def _rounded(fm, function, meshes, arguments):

@@ -75,11 +75,6 @@ def _changed_whole(*_):
 
 
 @persistent
-def _frame(scene, depsgraph=None):
-    _go_on()
-
-
-@persistent
 def _save(*_):
     if live.is_busy():
         live.complete()
@@ -97,7 +92,7 @@ def _render_ends(*_):
 
 _HANDLERS = {
     "depsgraph_update_post": _updated,
-    "frame_change_post": _frame,
+    "frame_change_post": _updated,
     "undo_post": _changed_whole,
     "redo_post": _changed_whole,
     "load_post": _changed_whole,

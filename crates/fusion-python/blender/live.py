@@ -101,6 +101,10 @@ def _finish(thing, job, taken):
     thing.fusion.key = taken.key
     _place(thing, taken.frame)
     problems.clear(thing, job.made.warnings)
+    snapshot.forget([thing.session_uid])
+    for other in bpy.data.objects:
+        if is_live(other) and any(entry.object == thing for entry in other.fusion.sources):
+            request(other)
 
 
 def _place(thing, frame):

@@ -59,6 +59,9 @@ class Surface:
 
 def read(thing, depsgraph):
     """The surface of an object, with its modifiers and shape keys."""
+    if thing.fusion.kind != "NONE" and not thing.modifiers:
+        # A result is there before Blender evaluates it.
+        return _read(thing.data, thing)
     evaluated = thing.evaluated_get(depsgraph)
     mesh = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
     if mesh is None:

@@ -44,7 +44,7 @@ def test_result_follows_a_cutter_that_moves():
 def test_result_follows_an_edit_and_an_option():
     block, drill, result = drilled()
     for vertex in block.data.vertices:
-        vertex.co.z *= 2
+        vertex.co.x *= 2
     block.data.update()
     update()
     assert 15 < volume(result) < 16
