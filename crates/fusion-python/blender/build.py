@@ -51,6 +51,13 @@ def _materials(mesh, stack, material):
     return slot
 
 
+def set_new_material(mesh, material):
+    """Gives the slot of new faces another material."""
+    slot = mesh.get(NEW_SLOT, -1)
+    if material is not None and 0 <= slot < len(mesh.materials) and mesh.materials[slot] != material:
+        mesh.materials[slot] = material
+
+
 def _attributes(mesh, stack, made, polygons):
     edges = np.empty(len(mesh.edges) * 2, np.int32)
     mesh.edges.foreach_get("vertices", edges)

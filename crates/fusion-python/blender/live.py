@@ -79,6 +79,7 @@ def _start(thing):
         thing.fusion.key = ""
         return
     if taken.key == thing.fusion.key:
+        build.set_new_material(thing.data, thing.fusion.material)
         _place(thing, taken.frame)
         return
     job = Job(taken.function, taken.stack, taken.options)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-_ROUNDS = 24
+_ROUNDS = 8
 
 
 def spread(values, is_known, edges):
@@ -11,31 +11,34 @@ def spread(values, is_known, edges):
     `edges` are pairs of points. What no known point reaches becomes 0.
     """
     values = np.where(is_known[:, None], np.nan_to_num(values), 0.0)
-    unknown = ~is_known
-    touched = edges[unknown[edges].any(axis=1)]
+    touched = edges[~is_known[edges].all(axis=1)]
     if len(touched) == 0:
         return values
-    ids, local = np.unique(touched, return_inverse=True)
-    local = local.reshape(-1, 2)
-    field, have, free = values[ids], is_known[ids], unknown[ids]
-    a, b = np.concatenate([local, local[:, ::-1]]).T
+    ids = np.flatnonzero(np.bincount(touched.ravel(), minlength=len(values)))
+    place = np.empty(len(values), np.int64)
+    place[ids] = np.arange(len(ids))
+    # From each point that is to be filled to its neighbours.
+    a, b = place[np.concatenate([touched, touched[:, ::-1]])].T
+    free = ~is_known[ids]
+    a, b = a[free[a]], b[free[a]]
+    field, have = values[ids], is_known[ids]
     while True:
-        total, count = _sums(field, have, a, b)
-        fresh = free & ~have & (count > 0)
+        usable = have[b] & ~have[a]
+        fresh = np.bincount(a[usable], minlength=len(ids)) > 0
         if not fresh.any():
             break
-        field[fresh] = total[fresh] / count[fresh, None]
+        field[fresh] = _means(field, a[usable], b[usable])[fresh]
         have |= fresh
+    usable = have[a] & have[b]
+    a, b = a[usable], b[usable]
+    filled = free & have
     for _ in range(_ROUNDS):
-        total, count = _sums(field, have, a, b)
-        even = free & have & (count > 0)
-        field[even] = total[even] / count[even, None]
+        field[filled] = _means(field, a, b)[filled]
     values[ids] = field
     return values
 
 
-def _sums(field, have, a, b):
-    """For each point the sum over the neighbours that have a value, and how many."""
-    count = np.bincount(a, weights=have[b], minlength=len(field))
-    columns = [np.bincount(a, weights=np.where(have[b], c[b], 0.0), minlength=len(field)) for c in field.T]
-    return np.stack(columns, axis=1), count
+def _means(field, a, b):
+    """For each point the mean over its neighbours."""
+    count = np.maximum(np.bincount(a, minlength=len(field)), 1)
+    return np.stack([np.bincount(a, weights=c[b], minlength=len(field)) for c in field.T], axis=1) / count[:, None]

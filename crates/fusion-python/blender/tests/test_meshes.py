@@ -86,6 +86,10 @@ def test_new_faces_have_a_slot_uvs_an_origin_and_are_smooth():
     slot = len(mesh.materials) - 1
     assert all((mesh.polygons[f].material_index == slot) == (origin[f] == -1) for f in range(len(origin)))
     assert all(mesh.polygons[f].use_smooth for f in new)
+    chosen = bpy.data.materials.new("chosen")
+    result.fusion.material = chosen
+    bpy.context.view_layer.update()
+    assert mesh.materials[slot] == chosen
     uvs = np.empty(2 * len(mesh.loops), np.float32)
     mesh.uv_layers["UVMap"].uv.foreach_get("vector", uvs)
     corners_of_new = np.concatenate([mesh.polygons[f].loop_indices for f in new])
