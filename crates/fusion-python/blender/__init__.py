@@ -12,7 +12,9 @@
 | `engine.py` | a job in a thread |
 | `problems.py` | an error as a message, a marker and a remedy |
 | `live.py`, `handlers.py` | live objects, and what makes them follow |
-| `live_operators.py`, `job_operators.py`, `gather.py` | operators |
+| `snapshot.py` | what a live object is made of now |
+| `live_operators.py` | operators of live objects |
+| `operation.py`, `job_operators.py`, `gather.py` | operators that make a new object, and what they take from the scene |
 | `panel.py` | the panel in the sidebar |
 """
 

@@ -13,7 +13,7 @@ _jobs = {}
 
 def is_live(thing):
     """Whether an object follows sources."""
-    return thing.fusion.kind != "NONE" and thing.fusion.is_live
+    return thing.fusion.kind != "NONE" and thing.fusion.is_live and thing.library is None
 
 
 def request(thing):
@@ -38,13 +38,22 @@ def pump():
         del _pending[uid]
         thing = _by_uid(uid)
         if thing is not None and thing.fusion.kind != "NONE":
-            _start(thing)
+            _guarded(_start, thing)
     for uid, (job, taken) in list(_jobs.items()):
         if job.is_done:
             del _jobs[uid]
             thing = _by_uid(uid)
             if thing is not None:
-                _finish(thing, job, taken)
+                _guarded(_finish, thing, job, taken)
+
+
+def _guarded(step, thing, *arguments):
+    """One object's trouble is told on it, and does not stop the others."""
+    try:
+        step(thing, *arguments)
+    except Exception as error:  # noqa: BLE001
+        problems.show(thing, problems.told(error), None)
+        thing.fusion.key = ""
 
 
 def complete():
@@ -71,13 +80,9 @@ def _start(thing):
     running = _jobs.pop(thing.session_uid, None)
     if running is not None:
         running[0].cancel()
-    thing.fusion.is_stale = False
-    try:
-        taken = snapshot.take(thing)
-    except problems.Problem as problem:
-        problems.show(thing, problem, None)
-        thing.fusion.key = ""
-        return
+    if thing.fusion.is_stale:
+        thing.fusion.is_stale = False
+    taken = snapshot.take(thing)
     if taken.key == thing.fusion.key:
         build.set_new_material(thing.data, thing.fusion.material)
         _place(thing, taken.frame)

@@ -41,6 +41,7 @@ def _restore(thing):
 
 def _done(operator, thing):
     """Makes the first result at once, so that undo has it, and tells what there is to tell."""
+    bpy.context.view_layer.update()
     live.request(thing)
     live.complete()
     return _told(operator, thing)

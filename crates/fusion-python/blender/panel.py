@@ -43,7 +43,7 @@ def _draw_live(layout, group):
     column = layout.column(align=True)
     for index, entry in enumerate(group.sources):
         row = column.row(align=True)
-        row.prop(entry, "object", text="")
+        row.prop(entry, "object", text=str(index))
         row.operator("fusion.remove_source", text="", icon="REMOVE").index = index
     column.operator("fusion.add_source")
     column = layout.column()

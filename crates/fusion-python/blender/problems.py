@@ -30,8 +30,10 @@ def told(error):
 def show(thing, problem, frame):
     """Writes a problem onto an object, and puts a marker at its place."""
     settings = thing.fusion
-    settings.message, settings.is_error = str(problem), True
-    settings.remedy, settings.workable = problem.remedy, problem.workable
+    if (settings.message, settings.is_error) != (str(problem), True):
+        # Only then: what is written makes Blender look again.
+        settings.message, settings.is_error = str(problem), True
+        settings.remedy, settings.workable = problem.remedy, problem.workable
     if problem.at is None or frame is None:
         _remove_marker(thing)
         return

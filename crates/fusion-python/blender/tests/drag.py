@@ -10,7 +10,6 @@ import statistics
 import sys
 import time
 
-import bpy
 import harness
 
 

@@ -239,9 +239,9 @@ def test_jobs_can_be_stopped():
 
     from harness import NAME
 
-    engine, job_operators = (importlib.import_module(f"{NAME}.{name}") for name in ("engine", "job_operators"))
+    engine, operation = (importlib.import_module(f"{NAME}.{name}") for name in ("engine", "operation"))
     block = cube(cuts=6)
-    request = job_operators.Request("remesh", [block], {"edge_length": 0.01})
+    request = operation.Request("remesh", [block], {"edge_length": 0.01})
     job = engine.Job(request.function, request.stack, request.options)
     assert not job.wait(0.3)
     job.cancel()
