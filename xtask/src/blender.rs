@@ -30,13 +30,12 @@ pub fn pack(options: &Options) -> Result<(), Fault> {
     let output = options.output.clone().unwrap_or_else(|| zip(&target));
     let mut pack = Command::new(python);
     pack.arg(root().join("xtask/extension.py")).arg(source()).arg(output);
-    match &options.wheel {
-        Some(wheel) => pack.arg("--wheel").arg(wheel),
-        None => {
-            let site = python_tests::install(&python_tests::build(&target)?, &target.join("python"))?;
-            pack.arg("--package").arg(site.join("fusion_mesh")).args(["--version", env!("CARGO_PKG_VERSION")])
-        }
-    };
+    if let Some(wheel) = &options.wheel {
+        pack.arg("--wheel").arg(wheel);
+    } else {
+        let site = python_tests::install(&python_tests::build(&target)?, &target.join("python"))?;
+        pack.arg("--package").arg(site.join("fusion_mesh")).args(["--version", env!("CARGO_PKG_VERSION")]);
+    }
     if pack.status()?.success() { Ok(()) } else { Err("the extension cannot be packed".into()) }
 }
 

@@ -72,7 +72,8 @@ fn kind(schema: &Value, property: &Value) -> Option<Value> {
             return Some(json!({ "kind": "length" }));
         }
         // Of words that take a value, such as `conic=W`, a list holds none.
-        let words: Vec<_> = title.split('`').skip(1).step_by(2).filter(|word| !word.contains(['=', '"', ':'])).collect();
+        let words: Vec<_> =
+            title.split('`').skip(1).step_by(2).filter(|word| !word.contains(['=', '"', ':'])).collect();
         if words.len() > 1 && !title.contains("length") {
             return Some(json!({ "kind": "word", "words": words.iter().map(|word| [word, ""]).collect::<Vec<_>>() }));
         }
