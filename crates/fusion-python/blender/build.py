@@ -5,7 +5,7 @@ import numpy as np
 
 from . import layers, marks
 from .polygons import assemble
-from .surface import TYPES
+from .surface import SEAM, TYPES
 
 ORIGIN = "fusion_origin"
 NEW_SLOT = "fusion_new_slot"
@@ -82,6 +82,9 @@ def _attributes(mesh, stack, made, polygons):
 
 
 def _put(mesh, name, kind, domain, values):
+    if name == SEAM:
+        mesh.edges.foreach_set("use_seam", np.ascontiguousarray(values, dtype=np.bool_))
+        return
     attribute = mesh.attributes.get(name)
     if attribute is None:
         attribute = mesh.attributes.new(name, kind, domain)

@@ -19,6 +19,7 @@ TYPES = {
 }
 # What the mesh itself is made of, and what belongs to the editor.
 _OWN = {"position", "material_index", "custom_normal", "fusion_origin"}
+SEAM = "uv_seam"
 KINDS = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 
@@ -104,11 +105,13 @@ def _get(items, name, width, dtype):
 
 def _layer(attribute):
     known = TYPES.get(attribute.data_type)
-    if known is None or attribute.name.startswith(".") or attribute.name in _OWN:
+    # Hidden in older versions of Blender.
+    title = SEAM if attribute.name == f".{SEAM}" else attribute.name
+    if known is None or title.startswith(".") or title in _OWN:
         return None
     name, width, dtype = known
     values = _get(attribute.data, name, width, dtype)
-    return Layer(attribute.name, attribute.domain, attribute.data_type, values)
+    return Layer(title, attribute.domain, attribute.data_type, values)
 
 
 def _groups(mesh, thing):

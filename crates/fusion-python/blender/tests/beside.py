@@ -1,4 +1,4 @@
-"""Ten pairs through this extension and through Blender's own Boolean + Bevel: `python beside.py`.
+"""Ten pairs through this extension and through Blender's own Boolean + Bevel: `python beside.py [clamped] [NAME…]`.
 
 Prints the table of docs/blender.md. Crossings are counted by the engine in both results, as Blender keeps them. The seam is
 measured on the sharp boolean: a point of it counts as rounded where the surface of the result is between a half and twice
@@ -59,7 +59,10 @@ def main():
     harness.enable()
     print("| pair | faces in | crossings | time | seam rounded | Blender: crossings | time | seam rounded |")
     print("|---|---|---|---|---|---|---|---|")
+    wanted = [word for word in sys.argv[1:] if word != "clamped"]
     for name, operation, radius, make in PAIRS:
+        if wanted and name not in wanted:
+            continue
         harness.empty()
         a, b = make()
         faces = len(a.data.polygons) + len(b.data.polygons)
