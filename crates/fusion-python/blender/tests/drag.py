@@ -27,21 +27,22 @@ def main():
     timed(build, "fill", spent["write"])
     block, drill = harness.cube(cuts=cuts), harness.cylinder(radius=0.2, vertices=32)
     result = harness.boolean(block, drill, radius=0.05)
-    whole, memory = [], []
+    whole, busy, memory = [], [], []
     for values in spent.values():
         values.clear()
     for step in range(steps):
         angle = 2 * math.pi * step / steps
-        start = time.perf_counter()
+        start, began = time.perf_counter(), time.process_time()
         drill.location.xy = 0.5 * math.cos(angle), 0.5 * math.sin(angle)
         harness.update()
         whole.append(time.perf_counter() - start)
+        busy.append(time.process_time() - began)
         memory.append(resident())
         assert not result.fusion.is_error, result.fusion.message
         assert len(whole) == len(spent["engine"])
     ours = [sum(parts) for parts in zip(*spent.values())]
     print(f"faces of the block: {len(block.data.polygons)}; of the result: {len(result.data.polygons)}")
-    print(f"step: {told(whole)}; Blender's own part: {told([w - o for w, o in zip(whole, ours)])}")
+    print(f"step: {told(whole)}, of processor time {told(busy)}; Blender's own part: {told([w - o for w, o in zip(whole, ours)])}")
     print("; ".join(f"{name}: {told(values)}" for name, values in spent.items()))
     print(f"memory: {memory[min(9, steps - 1)]} MB after 10 steps, {memory[-1]} MB after {steps}, most {max(memory)} MB")
     print(f"load of the machine: {os.getloadavg()[0]:.1f}")

@@ -11,7 +11,7 @@ import tempfile
 import time
 
 HERE = pathlib.Path(__file__).parent
-SECONDS = 240
+SECONDS = 300
 
 
 def main():
