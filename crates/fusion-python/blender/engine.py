@@ -1,6 +1,7 @@
 """A job of the engine in a thread of its own."""
 
 import threading
+import time
 import warnings
 from dataclasses import dataclass
 
@@ -50,9 +51,15 @@ class Job:
         self._cancelled = threading.Event()
         self._arguments = (function, stack, options, polygons)
         self.stage, self.share = "", 0.0
+        self._start = time.monotonic()
         self.made = self.error = None
         self._thread = threading.Thread(target=self._run, name="fusion", daemon=True)
         self._thread.start()
+
+    @property
+    def age(self):
+        """Seconds since the start."""
+        return time.monotonic() - self._start
 
     @property
     def is_done(self):

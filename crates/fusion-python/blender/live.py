@@ -7,6 +7,8 @@ from mathutils import Matrix
 from . import build, problems, snapshot
 from .engine import Job
 
+# A job this young may end although there is a newer change: else nothing would be seen as long as the mouse moves.
+PATIENCE = 0.5
 _pending = {}
 _jobs = {}
 
@@ -34,11 +36,18 @@ def progress():
 
 def pump():
     """Starts what is asked for and takes in what is done. Called on the main thread; never waits."""
+    _take_in()
     for uid in list(_pending):
+        if uid in _jobs and not _jobs[uid][0].is_done and _jobs[uid][0].age < PATIENCE:
+            continue
         del _pending[uid]
         thing = _by_uid(uid)
         if thing is not None and thing.fusion.kind != "NONE":
             _guarded(_start, thing)
+    _take_in()
+
+
+def _take_in():
     for uid, (job, taken) in list(_jobs.items()):
         if job.is_done:
             del _jobs[uid]
