@@ -1,6 +1,6 @@
 //! The Blender extension: its zip, and its tests in Blender as a Python module.
 
-use crate::{Fault, python_tests, root};
+use crate::{Fault, blender_options, python_tests, root};
 use clap::Args;
 use mesh_core::Stopwatch;
 use std::fs;
@@ -21,10 +21,21 @@ pub struct Options {
     /// The wheel to put in, as maturin makes it; without it one is packed from a build of the profile that xtask has
     #[arg(long, value_name = "FILE")]
     wheel: Option<PathBuf>,
+    /// Run its tests instead, as `ci` does
+    #[arg(long, conflicts_with_all = ["output", "wheel"])]
+    test: bool,
 }
 
-/// Packs the extension.
-pub fn pack(options: &Options) -> Result<(), Fault> {
+/// Writes the options and packs the extension, or tests it.
+pub fn run(options: &Options) -> Result<(), Fault> {
+    if options.test {
+        return test();
+    }
+    blender_options::write()?;
+    pack(options)
+}
+
+fn pack(options: &Options) -> Result<(), Fault> {
     let python = python_tests::interpreter().ok_or("Python 3.9 or later is not installed")?;
     let target = python_tests::target()?;
     let output = options.output.clone().unwrap_or_else(|| zip(&target));
@@ -46,7 +57,7 @@ pub fn test() -> Result<(), Fault> {
     let Some(python) = blender(&target.join("bpy"))? else {
         return python_tests::absent("blender", "Blender as a Python module (pip install bpy) is not there");
     };
-    pack(&Options { output: None, wheel: None })?;
+    pack(&Options { output: None, wheel: None, test: false })?;
     let program = python_tests::target_profile(&target).join(format!("fusion-cli{}", std::env::consts::EXE_SUFFIX));
     let mut tests = Command::new(python);
     tests.arg(source().join("tests/run.py")).arg(zip(&target)).env("FUSION_CLI", program);

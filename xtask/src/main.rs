@@ -50,7 +50,7 @@ enum Chore {
     Ci,
     /// Runs the benchmarks, or the same jobs through peers, and renews docs/benchmarks.md
     Bench(bench::Options),
-    /// Writes the options of the Blender extension and packs it
+    /// Writes the options of the Blender extension and packs it, or tests it
     Blender(blender::Options),
     /// Writes the parts of all regression cases as files
     Fixtures(fixtures::Options),
@@ -70,7 +70,7 @@ fn main() -> ExitCode {
     let result = match Cli::parse().chore {
         Chore::Ci => ci::run(),
         Chore::Bench(options) => bench::run(&options),
-        Chore::Blender(options) => blender_options::write().and_then(|()| blender::pack(&options)),
+        Chore::Blender(options) => blender::run(&options),
         Chore::Fixtures(options) => fixtures::run(&options),
         Chore::Models(options) => collect::run(&options),
         Chore::Python => python::write(),
