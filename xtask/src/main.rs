@@ -10,10 +10,13 @@
 //! | `pages.rs` | what stands between marks on a page |
 //! | `python.rs`, `python_types.rs` | the Python functions of all operations |
 //! | `python_tests.rs` | the Python module, built and tested |
+//! | `blender.rs`, `blender_options.rs` | the Blender extension: its zip, its tests, its options |
 //! | `circles.rs` | files that import each other |
 //! | `tidy.rs` | crate arrows, file lengths, citations, paths, pages that are stale |
 
 mod bench;
+mod blender;
+mod blender_options;
 mod ci;
 mod circles;
 mod collect;
@@ -47,6 +50,8 @@ enum Chore {
     Ci,
     /// Runs the benchmarks, or the same jobs through peers, and renews docs/benchmarks.md
     Bench(bench::Options),
+    /// Writes the options of the Blender extension and packs it, or tests it
+    Blender(blender::Options),
     /// Writes the parts of all regression cases as files
     Fixtures(fixtures::Options),
     /// Collects the real models behind the tables in docs/ into a folder, and checks that they are the ones measured
@@ -65,6 +70,7 @@ fn main() -> ExitCode {
     let result = match Cli::parse().chore {
         Chore::Ci => ci::run(),
         Chore::Bench(options) => bench::run(&options),
+        Chore::Blender(options) => blender::run(&options),
         Chore::Fixtures(options) => fixtures::run(&options),
         Chore::Models(options) => collect::run(&options),
         Chore::Python => python::write(),

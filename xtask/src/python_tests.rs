@@ -18,10 +18,10 @@ const JOBS: &str = "60";
 /// Builds and tests the module, or says why not.
 pub fn run() -> Result<(), Fault> {
     let start = Stopwatch::start();
-    let Some(python) = interpreter() else { return absent("Python 3.9 or later is not installed") };
+    let Some(python) = interpreter() else { return absent("python", "Python 3.9 or later is not installed") };
     let target = target()?;
     let Some(python) = environment(&python, &target.join("python"))? else {
-        return absent("an environment with NumPy and pytest cannot be made");
+        return absent("python", "an environment with NumPy and pytest cannot be made");
     };
     if !has_ray(&python)? {
         println!("ci: skipped the test on a Ray cluster: Ray is not in {}", python.display());
@@ -53,21 +53,21 @@ fn has_ray(python: &Path) -> Result<bool, Fault> {
 }
 
 /// Whether a door must be tested.
-fn insisted(door: &str) -> bool {
+pub fn insisted(door: &str) -> bool {
     std::env::var(INSISTS).is_ok_and(|names| names.split(',').any(|name| name.trim() == door))
 }
 
 /// Says that there was nothing to do, or fails if that was insisted on.
-fn absent(why: &str) -> Result<(), Fault> {
-    if insisted("python") {
-        return Err(format!("{why}, and {INSISTS} asks for python").into());
+pub fn absent(door: &str, why: &str) -> Result<(), Fault> {
+    if insisted(door) {
+        return Err(format!("{why}, and {INSISTS} asks for {door}").into());
     }
-    println!("ci: skipped the Python module: {why}");
+    println!("ci: skipped {door}: {why}");
     Ok(())
 }
 
 /// A Python that is recent enough.
-fn interpreter() -> Option<PathBuf> {
+pub fn interpreter() -> Option<PathBuf> {
     let recent = "import sys; sys.exit(sys.version_info < (3, 9))";
     let works = |name: &&str| Command::new(name).args(["-c", recent]).output().is_ok_and(|o| o.status.success());
     ["python3", "python"].iter().find(|name| works(name)).map(PathBuf::from)
@@ -99,7 +99,7 @@ fn environment(python: &Path, folder: &Path) -> Result<Option<PathBuf>, Fault> {
 }
 
 /// Builds the module; with this program it has the features that are built already.
-fn build(target: &Path) -> Result<PathBuf, Fault> {
+pub fn build(target: &Path) -> Result<PathBuf, Fault> {
     let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
     let packages = ["-p", "xtask", "-p", "fusion-python", "--features", "fusion-python/extension"];
     let mut build = Command::new(env!("CARGO"));
@@ -107,12 +107,16 @@ fn build(target: &Path) -> Result<PathBuf, Fault> {
     if !build.status()?.success() {
         return Err("the Python module does not build".into());
     }
-    let folder = if cfg!(debug_assertions) { "debug" } else { "release" };
-    Ok(target.join(folder).join(format!("{DLL_PREFIX}fusion_python{DLL_SUFFIX}")))
+    Ok(target_profile(target).join(format!("{DLL_PREFIX}fusion_python{DLL_SUFFIX}")))
+}
+
+/// The folder of the profile's builds.
+pub fn target_profile(target: &Path) -> PathBuf {
+    target.join(if cfg!(debug_assertions) { "debug" } else { "release" })
 }
 
 /// Puts the package and the module into one folder.
-fn install(module: &Path, environment: &Path) -> Result<PathBuf, Fault> {
+pub fn install(module: &Path, environment: &Path) -> Result<PathBuf, Fault> {
     let site = environment.join("package");
     let package = site.join("fusion_mesh");
     if package.exists() {
@@ -136,7 +140,7 @@ fn crate_folder() -> PathBuf {
 }
 
 /// The folder of builds.
-fn target() -> Result<PathBuf, Fault> {
+pub fn target() -> Result<PathBuf, Fault> {
     // This program is in the folder of a profile.
     let program = std::env::current_exe()?;
     let target = program.ancestors().nth(2);

@@ -1,6 +1,6 @@
 //! The house rules a compiler does not check: crate arrows, circles of files, file lengths, lints switched on, citations, paths, pages written by the machine.
 
-use crate::{Fault, circles, pages, python, root, walk};
+use crate::{Fault, blender_options, circles, pages, python, root, walk};
 use serde_json::Value;
 use std::fs;
 use std::process::Command;
@@ -48,6 +48,10 @@ pub fn run() -> Result<(), Fault> {
     }
     if !python::is_current()? {
         faults.push(format!("{}: is not what the operations say; run cargo xtask python", python::name()));
+    }
+    if !blender_options::is_current()? {
+        let name = blender_options::name();
+        faults.push(format!("{name}: is not what the operations say; run cargo xtask blender"));
     }
     for fault in &faults {
         println!("tidy: {fault}");
