@@ -316,3 +316,14 @@ fn ridges_and_valleys_of_holes_are_swept() {
     // Eight corners of the plate and twelve of each hole, between as many edges and half as many again.
     assert_eq!((done.strips, done.corners), (12 + 3 * 18, 8 + 3 * 12));
 }
+
+/// Beyond half its side no ball rolls within a cube.
+#[test]
+fn where_no_ball_fits_a_smaller_one_is_told() {
+    let mesh = Connected::new(shapes::cuboid(DVec3::ONE)).unwrap();
+    for r in [0.51, 0.6, 0.75] {
+        let done = blend(&mesh, &curves(&mesh), &Params::new(r), &Watch::default()).unwrap();
+        assert!(volume(&done.mesh) < 0.99, "nothing is blended with radius {r}");
+        assert!(done.shrunk.iter().any(|s| s.1 < 0.5) && done.full_share == 0.0, "radius {r}: {:?}", done.shrunk);
+    }
+}

@@ -65,6 +65,8 @@ const FINER: [f64; 2] = [1.0, 0.6];
 const FEW: usize = 32;
 /// A turn between two faces of the envelope that is a fold, in radians: 95 degrees.
 const FOLD: f64 = 1.66;
+/// A turn between two faces, in radians, of which nothing is to be rounded.
+const FLAT: f64 = 1e-6;
 /// Levels of the scalar at which outlines are drawn, in radii, in the order in which they are tried. The first counts a face
 /// that a ball touches along its whole middle as consumed.
 const LEVELS: [f64; 3] = [1e-6, 4e-3, -4e-3];
@@ -146,6 +148,11 @@ pub(crate) fn blend(
     watch.step("blend", 0.0)?;
     let outlines = outlines(&ground, curves, &chosen, r)?;
     if outlines.is_empty() {
+        // No point is touched, or all are.
+        let turns = |h: HalfedgeId| dihedral_angle(mesh, h).is_some_and(|a| a.abs() > FLAT);
+        if let Some(&h) = curves.iter().flat_map(|c| &c.halfedges).find(|&&h| turns(h)) {
+            return Err(Trouble::at(NO_BALL, vec![mesh.position(mesh.tail(h))]));
+        }
         let origins = Origins::identity(0, mesh.vertex_count(), mesh.face_count());
         let blended = Blended::new(mesh.mesh().clone(), origins, FaceId::from(mesh.face_count()));
         return Ok(Made { blended, caps: vec![], continued: vec![] });
