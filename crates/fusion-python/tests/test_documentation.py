@@ -24,6 +24,8 @@ NAMES = sorted(m.name for m in pkgutil.iter_modules(fm.__path__) if m.name not i
 
 @pytest.mark.parametrize("name", ["", *NAMES])
 def test_examples_of_docstrings_run(name):
+    if f"{name}.py" in OPTIONAL:
+        pytest.importorskip("pyarrow")
     module = importlib.import_module(f"fusion_mesh.{name}" if name else "fusion_mesh")
     result = doctest.testmod(module, optionflags=doctest.ELLIPSIS)
     assert result.failed == 0
