@@ -39,14 +39,12 @@ fn pack(options: &Options) -> Result<(), Fault> {
     let python = python_tests::interpreter().ok_or("Python 3.9 or later is not installed")?;
     let target = python_tests::target()?;
     let output = options.output.clone().unwrap_or_else(|| zip(&target));
+    let wheel = match &options.wheel {
+        Some(wheel) => wheel.clone(),
+        None => python_tests::packed(&python, &python_tests::build(&target)?, &target.join("python"))?,
+    };
     let mut pack = Command::new(python);
-    pack.arg(root().join("xtask/extension.py")).arg(source()).arg(output);
-    if let Some(wheel) = &options.wheel {
-        pack.arg("--wheel").arg(wheel);
-    } else {
-        let site = python_tests::install(&python_tests::build(&target)?, &target.join("python"))?;
-        pack.arg("--package").arg(site.join("fusion_mesh")).args(["--version", env!("CARGO_PKG_VERSION")]);
-    }
+    pack.arg(root().join("xtask/extension.py")).arg(source()).arg(output).arg(wheel);
     if pack.status()?.success() { Ok(()) } else { Err("the extension cannot be packed".into()) }
 }
 

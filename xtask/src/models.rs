@@ -1,4 +1,5 @@
-//! The models of fixtures/recipes, from nothing: bodies of round cones that melt into each other, and a bottle.
+//! The models of fixtures/documents, from nothing: bodies of round cones that melt into each other, a bottle,
+//! a ring of scales, and the parts of a teapot.
 
 use crate::Fault;
 use fusion::remeshing;
@@ -20,6 +21,7 @@ const fn cone(a: [f64; 3], b: [f64; 3], ra: f64, rb: f64, melt: f64) -> Cone {
 
 /// Every model by name.
 pub fn all() -> Result<Vec<(&'static str, TriMesh)>, Fault> {
+    let pot = shapes::closed_teapot(12);
     Ok(vec![
         ("dragon", grown(&with_skull(dragon()), 0.055, 0.075)?),
         ("bear", grown(&with_skull(bear()), 0.055, 0.075)?),
@@ -28,6 +30,10 @@ pub fn all() -> Result<Vec<(&'static str, TriMesh)>, Fault> {
         ("bottle", bottle()),
         ("capsule", shapes::capsule(1.0, 4.0, 40, 10, 13)),
         ("torus", shapes::torus(1.0, 0.35, 72, 28)),
+        ("scales", scales()),
+        ("pot", pot.body),
+        ("spout", pot.spout),
+        ("handle", pot.handle),
     ])
 }
 
@@ -175,6 +181,24 @@ fn bottle() -> TriMesh {
             mesh.faces.push([at(ring, k), at(ring, k + 1), at(ring + 1, k + 1)]);
             mesh.faces.push([at(ring, k), at(ring + 1, k + 1), at(ring + 1, k)]);
         }
+    }
+    mesh
+}
+
+/// A ring whose tube is covered with bumps, a source of detail.
+fn scales() -> TriMesh {
+    const AROUND: u32 = 120;
+    const TUBE: u32 = 42;
+    let angle = |k: u32, n: u32| std::f64::consts::TAU * f64::from(k) / f64::from(n);
+    let mut mesh = TriMesh { positions: vec![], faces: vec![] };
+    for (i, j) in (0..AROUND).flat_map(|i| (0..TUBE).map(move |j| (i, j))) {
+        let (u, v) = (angle(i, AROUND), angle(j, TUBE));
+        let height = 0.35 + 0.02 * (20.0 * u).sin() * (7.0 * v).sin();
+        let reach = 1.0 + height * v.cos();
+        mesh.positions.push(DVec3::new(reach * u.cos(), reach * u.sin(), height * v.sin()));
+        let at = |i: u32, j: u32| VertexId(i % AROUND * TUBE + j % TUBE);
+        mesh.faces.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+        mesh.faces.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
     }
     mesh
 }

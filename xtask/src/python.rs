@@ -3,7 +3,7 @@
 use crate::python_types::{default, hint};
 use crate::{Fault, root};
 use fusion::operation::{
-    Blend, Boolean, Cluster, Compose, Cut, Detail, OptionRow, Options, Remesh, Sharpen, option_rows, schema,
+    Blend, Boolean, Cluster, Compose, Cut, Detail, OptionRow, Options, Pose, Remesh, Sharpen, option_rows, schema,
 };
 use serde_json::Value;
 use std::fmt::Write;
@@ -56,8 +56,12 @@ fn functions() -> Vec<Function> {
         function::<Detail>("detail", One, DETAIL),
         function::<Cluster>("cluster", One, CLUSTER),
         function::<Remesh>("remesh", One, REMESH),
+        function::<Pose>("pose", One, POSE),
     ]
 }
+
+/// Options that name what stands in documents alone.
+const IN_DOCUMENTS: [(&str, &str); 2] = [("pose", "on"), ("pose", "snap")];
 
 const UNION: &str = r#"both = fm.union(fm.box((2, 2, 2)), fm.box((1, 1, 3)), radius="2%", profile="g2")
 both.report["validity"]["closed"]
@@ -94,9 +98,13 @@ round.report["figures"]["patches"]
 const REMESH: &str = r#"even = fm.remesh(fm.sphere(1.0), edge_length=0.2)
 even.report["validity"]["closed"]
 True"#;
+const POSE: &str = r#"moved = fm.pose(fm.box((1, 1, 1)), rotate=((0, 0, 1), 45), translate=(0, 0, 2))
+round(float(moved.vertices[:, 0].max()), 9)
+0.707106781"#;
 
 /// Options that a reader looks for first, in this order; the others follow in order of their names.
-const FIRST: [&str; 8] = ["radius", "edge_length", "near", "plane", "path", "target", "source", "profile"];
+const FIRST: [&str; 11] =
+    ["radius", "edge_length", "near", "plane", "path", "target", "source", "profile", "scale", "rotate", "translate"];
 
 /// Writes the functions.
 pub fn write() -> Result<(), Fault> {
@@ -151,6 +159,7 @@ impl Function {
         let definition = &root["$defs"][name.trim_start_matches("#/$defs/")];
         let mut rows = (self.rows)();
         rows.retain(|row| self.fixed.is_none_or(|(fixed, _)| row.name != fixed));
+        rows.retain(|row| !IN_DOCUMENTS.contains(&(self.name, row.name.as_str())));
         rows.sort_by_key(|row| FIRST.iter().position(|f| *f == row.name).unwrap_or(FIRST.len()));
         let property = |row: &OptionRow| &definition["properties"][&row.name];
         writeln!(text, "\n\ndef {}(", self.name)?;
@@ -169,7 +178,9 @@ impl Function {
                 default(&property["default"])
             )?;
         }
-        text.push_str("    precision: Literal[\"f64\", \"f32\"] = \"f64\",\n");
+        if self.is_checked() {
+            text.push_str("    precision: Literal[\"f64\", \"f32\"] = \"f64\",\n");
+        }
         text.push_str("    threads: Optional[int] = None,\n    progress: Progress = None,\n) -> Result:\n");
         let operation = definition["description"].as_str().unwrap_or_default();
         let summary = if self.summary.is_empty() { format!("{operation}.") } else { self.summary.into() };
@@ -187,11 +198,17 @@ impl Function {
             Inputs::Several => ("meshes", "[f\"meshes[{i}]\" for i in range(len(meshes))]"),
             _ => ("[mesh]", "[\"mesh\"]"),
         };
+        let precision = if self.is_checked() { "precision" } else { "\"f64\"" };
         writeln!(
             text,
-            "    return run(\"{}\", {meshes}, {names}, options, precision, threads, progress)",
+            "    return run(\"{}\", {meshes}, {names}, options, {precision}, threads, progress)",
             self.operation
         )
+    }
+
+    /// Whether its result is checked in the coordinates that are asked for; moving checks nothing.
+    fn is_checked(&self) -> bool {
+        self.operation != Pose::NAME
     }
 
     /// The docstring, in the manner of NumPy.
@@ -218,6 +235,9 @@ impl Function {
             writeln!(text, "    {} : {takes}, {ending}", row.name)?;
             wrap(&row.meaning.replace("\\|", "|"), text)?;
         }
+        if self.is_checked() {
+            text.push_str(PRECISION);
+        }
         text.push_str(COMMON);
         for (k, line) in self.example.lines().enumerate() {
             let is_answer = k + 1 == self.example.lines().count();
@@ -228,9 +248,11 @@ impl Function {
     }
 }
 
-const COMMON: &str = r#"    precision : f64 or f32, default f64
+const PRECISION: &str = r#"    precision : f64 or f32, default f64
         The coordinates in which the result must be sound: ``"f32"`` for one that goes into STL or glTF.
-    threads : int, optional
+"#;
+
+const COMMON: &str = r#"    threads : int, optional
         Number of threads; all processors where not given. The result has the same bits for any number.
     progress : callable or bool, optional
         Called with a stage's name and the share of it that is done; ends the job by an exception or by returning ``False``.

@@ -6,11 +6,16 @@ use std::env::consts::{DLL_PREFIX, DLL_SUFFIX, EXE_SUFFIX};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread;
+use std::time::Duration;
 
 /// What the tests need besides NumPy; only pytest must be there.
-const PACKAGES: [&str; 5] = ["numpy", "pytest", "trimesh", "pyvista", "mypy"];
+const PACKAGES: [&str; 6] = ["numpy", "pytest", "trimesh", "pyvista", "mypy", "pyright"];
 /// Set by who wants a failure where there is no Python.
 const INSISTS: &str = "FUSION_CI_REQUIRE";
+
+/// The tests are ended, as failed, after this long.
+const LIMIT: Duration = Duration::from_secs(360);
 
 /// Jobs of the test on a Ray cluster: enough for a node to die among them, few enough for half a minute.
 const JOBS: &str = "60";
@@ -27,18 +32,34 @@ pub fn run() -> Result<(), Fault> {
         println!("ci: skipped the test on a Ray cluster: Ray is not in {}", python.display());
     }
     let module = build(&target)?;
-    let site = install(&module, &target.join("python"))?;
+    let site = install(&python, &module, &target.join("python"))?;
     // Errors of the tests are to be seen with everything they print.
     let mut tests = Command::new(&python);
     tests.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "--durations=5"]).arg(crate_folder().join("tests"));
     tests.env("PYTHONPATH", &site).env("PYTHONDONTWRITEBYTECODE", "1").current_dir(crate_folder());
     let program = module.with_file_name(format!("fusion-cli{EXE_SUFFIX}"));
     tests.env("FUSION_CLI", program).env("JOBS", JOBS);
-    if !tests.status()?.success() {
+    if !succeeds_in_time(&mut tests)? {
         return Err("the tests of the Python module failed".into());
     }
     println!("ci: python: {:.0} s", start.elapsed().as_secs_f64());
     Ok(())
+}
+
+/// Whether a program succeeds, and in time.
+fn succeeds_in_time(program: &mut Command) -> Result<bool, Fault> {
+    let (start, mut child) = (Stopwatch::start(), program.spawn()?);
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(status.success());
+        }
+        if start.elapsed() > LIMIT {
+            child.kill()?;
+            child.wait()?;
+            return Err(format!("the tests of the Python module took more than {} s", LIMIT.as_secs()).into());
+        }
+        thread::sleep(Duration::from_millis(100));
+    }
 }
 
 /// Whether the environment has Ray, which is installed only where that is insisted on: it takes 600 MB.
@@ -115,24 +136,40 @@ pub fn target_profile(target: &Path) -> PathBuf {
     target.join(if cfg!(debug_assertions) { "debug" } else { "release" })
 }
 
-/// Puts the package and the module into one folder.
-pub fn install(module: &Path, environment: &Path) -> Result<PathBuf, Fault> {
-    let site = environment.join("package");
-    let package = site.join("fusion_mesh");
-    if package.exists() {
-        fs::remove_dir_all(&package)?;
+/// Packs a wheel and installs it into a folder of its own.
+fn install(python: &Path, module: &Path, environment: &Path) -> Result<PathBuf, Fault> {
+    let site = emptied(environment.join("package"))?;
+    let wheel = packed(python, module, environment)?;
+    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-index", "--target"];
+    if !Command::new(python).args(pip).arg(&site).arg(wheel).status()?.success() {
+        return Err("the wheel cannot be installed".into());
     }
-    fs::create_dir_all(&package)?;
-    let source = crate_folder().join("python/fusion_mesh");
-    for entry in fs::read_dir(source)? {
-        let path = entry?.path();
-        if let Some(name) = path.file_name().filter(|_| path.is_file()) {
-            fs::copy(&path, package.join(name))?;
-        }
-    }
-    let suffix = if cfg!(windows) { "pyd" } else { "abi3.so" };
-    fs::copy(module, package.join(format!("_native.{suffix}")))?;
     Ok(site)
+}
+
+/// A wheel of a module that is built already.
+pub fn packed(python: &Path, module: &Path, environment: &Path) -> Result<PathBuf, Fault> {
+    let folder = emptied(environment.join("wheel"))?;
+    let project: toml::Table = fs::read_to_string(crate_folder().join("pyproject.toml"))?.parse()?;
+    let about = folder.join("project.json");
+    fs::write(&about, serde_json::to_string(&project["project"])?)?;
+    let package = crate_folder().join("python/fusion_mesh");
+    let mut pack = Command::new(python);
+    pack.arg(root().join("xtask/wheel.py")).arg(module).arg(package).arg(about);
+    let made = pack.arg(env!("CARGO_PKG_VERSION")).arg(&folder).output()?;
+    if !made.status.success() {
+        return Err(format!("the wheel cannot be packed: {}", String::from_utf8_lossy(&made.stderr)).into());
+    }
+    Ok(String::from_utf8(made.stdout)?.trim().into())
+}
+
+/// A folder with nothing in it.
+fn emptied(folder: PathBuf) -> Result<PathBuf, Fault> {
+    if folder.exists() {
+        fs::remove_dir_all(&folder)?;
+    }
+    fs::create_dir_all(&folder)?;
+    Ok(folder)
 }
 
 fn crate_folder() -> PathBuf {

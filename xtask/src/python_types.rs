@@ -6,7 +6,8 @@ use serde_json::Value;
 pub fn hint(root: &Value, name: &str, schema: &Value) -> String {
     match name {
         // What the engine takes as arrays may be a mesh or a result here.
-        "within" => "Optional[MeshLike]".into(),
+        "within" | "drop" => "Optional[MeshLike]".into(),
+        "rotate" => "Optional[Union[Table, Tuple[Point, float]]]".into(),
         "seams" => "Optional[Union[Path, Result, Sequence[Optional[int]]]]".into(),
         "plane" => "Optional[Union[Table, Tuple[Point, Point]]]".into(),
         "source" => "Union[Region, Sequence[Region]]".into(),

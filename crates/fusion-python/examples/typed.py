@@ -23,3 +23,17 @@ try:
 except fm.InfeasibleError as error:
     print(error.place, error.workable_radius, error.curves)
 print(points.shape, int(new.sum()), result.report["validity"])
+
+
+def model(mesh: fm.Mesh) -> fm.Evaluation:
+    """A document with a parameter."""
+    document = fm.Document()
+    document.parameter("soft", "2%")
+    document.part("block", mesh, translate=(0.0, 0.0, 1.0))
+    document.step("blend", "block", fm.edges().convex(), radius="$soft", name="round")
+    return document.evaluate(cache=fm.Cache(memory=0.1), threads=1)
+
+
+made: fm.Evaluation = model(fm.box())
+turned: fm.Result = fm.pose(made["round"], rotate=((0, 0, 1), 30.0), scale=2.0)
+print([step["known"] for step in made.steps], turned.faces.shape)

@@ -31,6 +31,7 @@ impl From<Error> for Fault {
     fn from(error: Error) -> Self {
         match error {
             Error::Option(option) => Self::Usage(option),
+            Error::Document(document) => Self::Unreadable(document.to_string()),
             error if error.is_cancelled() => Self::Cancelled,
             error => Self::Engine(error),
         }

@@ -14,6 +14,7 @@
 //! |---|---|
 //! | `module.rs` | the functions that Python sees |
 //! | `operations.rs` | operations by name |
+//! | `document_module.rs`, `documents.rs` | documents, as Python sees them, and what is done for it |
 //! | `job.rs` | one job: its threads, progress, Ctrl-C |
 //! | `arrays.rs`, `attributes.rs` | meshes from arrays and back, with their attributes |
 //! | `columns.rs` | arrays of one kind of value |
@@ -29,6 +30,10 @@ mod arrays;
 mod attributes;
 #[cfg(feature = "extension")]
 mod columns;
+#[cfg(feature = "extension")]
+mod document_module;
+#[cfg(feature = "extension")]
+mod documents;
 #[cfg(feature = "extension")]
 mod failure;
 #[cfg(feature = "extension")]

@@ -8,7 +8,7 @@ use crate::failure::Fault;
 use crate::job::{self, Terms};
 use crate::picture::{View, png};
 use crate::value::{options_from, plain, to_python};
-use crate::{listing, operations, origins};
+use crate::{document_module, listing, operations, origins};
 use fusion::mesh_core::FaceId;
 use fusion::mesh_io::{self, Format, Model};
 use fusion::operation::Precision;
@@ -33,7 +33,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(as_written, module)?)?;
     module.add_function(wrap_pyfunction!(triangulate, module)?)?;
     module.add_function(wrap_pyfunction!(cli, module)?)?;
-    Ok(())
+    document_module::add_to(module)
 }
 
 /// Runs an operation on meshes. Gives the result as a dictionary: mesh, report, origins, nets.

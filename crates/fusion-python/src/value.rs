@@ -21,6 +21,11 @@ pub fn options_from(options: &Bound<'_, PyDict>) -> PyResult<Map<String, Value>>
     Ok(map)
 }
 
+/// One value as JSON.
+pub fn value_from(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Value> {
+    from_python(value, name, DEPTH)
+}
+
 fn from_python(object: &Bound<'_, PyAny>, option: &str, depth: usize) -> PyResult<Value> {
     if depth == 0 {
         return Err(PyValueError::new_err(format!("{option}: nested too deeply")));

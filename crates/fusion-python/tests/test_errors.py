@@ -60,6 +60,10 @@ def test_files_that_cannot_be():
         fm.blend(fm.box(), radius=0.1, profile="missing.toml")
     with pytest.raises(fm.OutputError):
         fm.box().save("no such folder/box.ply")
+    with pytest.raises(fm.OutputError):
+        fm.render(fm.box(), "no such folder/box.png", size=32)
+    with pytest.raises(fm.OutputError):
+        fm.Document().save("no such folder/box.toml")
     with pytest.raises(fm.InputError, match="docx"):
         fm.box().save("box.docx")
 

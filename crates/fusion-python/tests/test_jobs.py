@@ -1,6 +1,5 @@
-"""Threads, progress, Ctrl-C, and memory over many calls."""
+"""Threads, progress, Ctrl-C."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -98,29 +97,6 @@ def test_control_c_ends_a_long_job():
     print(f"ended {1000 * seconds:.0f} ms after Ctrl-C")
     # A tenth of a second on a machine of one's own; builders run many things at once.
     assert seconds < 2.0
-
-
-def resident():
-    """Bytes in memory."""
-    with open("/proc/self/statm") as file:
-        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
-def test_memory_and_files_stay_over_a_thousand_unions(boxes):
-    def unions(count):
-        for _ in range(count):
-            result = fm.union(*boxes)
-            assert len(result.origins.vertices) == len(result.vertices)
-            with pytest.raises(fm.UsageError):
-                fm.blend(boxes[0], radius=-1)
-
-    unions(200)
-    before, files = resident(), len(os.listdir("/proc/self/fd"))
-    unions(800)
-    grown = resident() - before
-    assert grown < 8 << 20, f"{grown / 2**20:.1f} MiB more"
-    assert len(os.listdir("/proc/self/fd")) <= files
 
 
 def test_results_own_their_memory():

@@ -110,6 +110,46 @@ def test_detail_comes_from_another_mesh():
     assert moved[far].max() == 0 and moved.max() > 0.002
 
 
+def test_poses_are_those_of_the_program(tmp_path, cli):
+    block = fm.box((1, 2, 3))
+    block.save(tmp_path / "box.ply")
+    rotated = ["--scale", 2, "--rotate", "0,0,1,30", "--translate", "1,0,0"]
+    cli("pose", tmp_path / "box.ply", *rotated, "-o", tmp_path / "out.ply")
+    moved = fm.pose(block, scale=2, rotate=((0, 0, 1), 30), translate=(1, 0, 0))
+    assert same(moved.mesh, fm.as_mesh(tmp_path / "out.ply"))
+    c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
+    assert np.allclose(moved.vertices, 2 * block.vertices @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) + (1, 0, 0))
+    dropped = fm.pose(fm.sphere(0.5), translate=(0, 0, 9), drop=fm.box((2, 2, 2)))
+    assert dropped.vertices[:, 2].min() == pytest.approx(1, abs=1e-12)
+    with pytest.raises(fm.UsageError, match="drop"):
+        fm.pose(fm.sphere(0.5), translate=(9, 0, 0), drop=fm.box((2, 2, 2)))
+
+
+def test_a_sharp_profile_takes_a_fillet_back(tmp_path, cli):
+    soft = fm.blend(fm.box((1, 1, 1)), fm.edges().near((0.5, 0.5, 0)), radius=0.2)
+    point = fm.edges().near((0.45, 0.45, 0))
+    sharp = fm.blend(soft, point, profile="sharp")
+    assert fm.info(sharp)["volume"] == pytest.approx(1, abs=1e-12)
+    assert same(sharp.mesh, fm.sharpen(soft, near=(0.45, 0.45, 0)).mesh)
+    soft.save(tmp_path / "soft.ply")
+    cli("blend", tmp_path / "soft.ply", "--profile", "sharp", "--near", "0.45,0.45,0", "-o", tmp_path / "sharp.ply")
+    assert same(sharp.mesh, fm.as_mesh(tmp_path / "sharp.ply"))
+    document = fm.Document()
+    document.part("soft", soft)
+    document.step("blend", "soft", point, profile="sharp")
+    assert same(document.evaluate()["soft"].mesh, sharp.mesh)
+
+
+def test_what_limits_a_radius_is_named(boxes):
+    # The ball rolls on the rims of both boxes, however large it is.
+    free = fm.max_radius(*boxes)
+    assert free.at is None and "size of the curves" in free.limited_by
+    for radius in (0.75 * free.radius, free.radius):
+        assert fm.union(*boxes, radius=radius, overlap="error").report["validity"]["closed"]
+    bounded = fm.max_radius(fm.box((1, 1, 1)))
+    assert bounded.at is not None and len(bounded.limited_by) > 3
+
+
 def test_largest_radius():
     assert fm.max_radius(fm.box((1, 1, 1))).radius == pytest.approx(0.5, rel=0.02)
 

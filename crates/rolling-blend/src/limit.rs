@@ -17,9 +17,13 @@ pub struct Limit {
     pub radius: f64,
     /// What goes wrong beyond it.
     pub what: &'static str,
-    /// Where, in model units. `None` if nothing was in the way of any ball up to the size of the mesh.
+    /// Where, in model units. `None` if balls up to the size of the curves all work, as they do where they can roll on the edges of
+    /// both sides: no larger one is tried.
     pub at: Option<DVec3>,
 }
+
+/// What ends a search in which no ball fails.
+const SEARCHED: &str = "the size of the curves, up to which balls are tried; larger ones may work too";
 
 /// Ratio of the least radius that failed to the largest that worked at which the search ends.
 const CLOSE_ENOUGH: f64 = 1.005;
@@ -168,10 +172,10 @@ impl Search<'_> {
             if let Some(failure) = known {
                 break failure;
             }
-            let next = GROWTH * works;
-            if next > diagonal {
-                return Ok(Limit { radius: works, what: "nothing", at: None });
+            if works >= diagonal {
+                return Ok(Limit { radius: works, what: SEARCHED, at: None });
             }
+            let next = (GROWTH * works).min(diagonal);
             known = self.fails(next)?;
             if known.is_none() {
                 works = next;

@@ -42,9 +42,9 @@ impl Record {
     }
 }
 
-/// Evaluates every document of fixtures/recipes and returns how many faults there were.
+/// Evaluates every document of fixtures/documents and returns how many faults there were.
 pub fn run(bless: bool, reference: &mut Option<Reference>, threads: &mut Threads) -> Result<usize, Fault> {
-    let folder = root().join("fixtures/recipes");
+    let folder = root().join("fixtures/documents");
     let mut paths: Vec<PathBuf> = fs::read_dir(&folder)?.flatten().map(|e| e.path()).collect();
     paths.retain(|p| p.extension().is_some_and(|e| e == "toml"));
     paths.sort();
@@ -101,9 +101,9 @@ fn replay(
         Err(error) => wrong.push(format!("cannot be checked: {error}")),
     }
     if let Some(reference) = reference {
-        reference.add(&format!("recipe-{name}"), &made)?;
+        reference.add(&format!("document-{name}"), &made)?;
     }
-    let record = root().join("fixtures/golden").join(format!("recipe-{name}.toml"));
+    let record = root().join("fixtures/golden").join(format!("document-{name}.toml"));
     if bless {
         fs::write(&record, toml::to_string(&now)?)?;
     } else if let Ok(text) = fs::read_to_string(&record) {

@@ -8,8 +8,7 @@ use crate::session::{Destination, Session, counts, joint_diagonal};
 use crate::shared_args::{MaxRadius, OptionalTarget, Source};
 use clap::Args;
 use fusion::operation::{Blend, Options, Section};
-use fusion::{Error, Outcome, Profile, blend, round, sharpen};
-use mesh_io::{Format, Model};
+use fusion::{Error, Profile, blend, round};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -35,22 +34,19 @@ pub fn run(session: &Session, mut args: BlendArgs) -> Result<(), Failure> {
     if args.limit.max_radius && args.blend.profile != Section::default() {
         return Err(Failure::usage("--max-radius is that of an arc; leave out --profile"));
     }
-    let is_sharp = args.blend.profile == Profile::Sharp.into();
-    let sharpens = is_sharp && !args.blend.near.is_empty() && args.blend.curves.is_none() && !args.limit.max_radius;
     let Some(target) = args.target.target() else { return limit(session, args) };
-    if !sharpens {
-        args.blend.validate().map_err(|e| wrong(&e))?;
-    }
+    args.blend.validate().map_err(|e| wrong(&e))?;
     let destination = Destination::check(&target, session)?;
     let sketch = args.drawings.sketch()?;
     args.blend.load(&mut Read::new(session)).map_err(|e| unread(&e))?;
     let model = session.read(&args.input, &args.source)?;
     let inputs = || counts(std::slice::from_ref(&args.input), std::slice::from_ref(&model));
-    if sharpens && let Some(mut outcome) = sharpened(session, &args, &model, destination.format)? {
+    let diagonal = joint_diagonal(std::slice::from_ref(&model));
+    let sharpened = args.blend.sharpened(&model, diagonal, destination.format, session.watch());
+    if let Some(mut outcome) = sharpened.map_err(|e| refused(&args.input, &e))? {
         outcome.report.inputs = inputs();
         return session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report);
     }
-    let diagonal = joint_diagonal(std::slice::from_ref(&model));
     let mut params = args.blend.params(diagonal, destination.format).map_err(|e| wrong(&e))?;
     params.blend.sketch = sketch.clone();
     let outcome = round(&model, &params, session.watch()).map_err(|e| refused(&args.input, &e));
@@ -65,26 +61,6 @@ pub fn run_chamfer(session: &Session, args: BlendArgs) -> Result<(), Failure> {
         return Err(Failure::usage("`chamfer` has its own profile; take `blend` for another"));
     }
     run(session, args)
-}
-
-/// The mesh with its fillets at the picked places taken back. `None` if the first of these is on no fillet and there is a
-/// radius, which then means a blend with a sharp section along feature curves.
-fn sharpened(session: &Session, args: &BlendArgs, model: &Model, format: Format) -> Result<Option<Outcome>, Failure> {
-    let diagonal = joint_diagonal(std::slice::from_ref(model));
-    let radius = args.blend.radius.map(|r| r.sides().map(|r| r.resolve(diagonal)));
-    let params = sharpen::Params {
-        near: args.blend.near.iter().map(|n| n.at).collect(),
-        radius: radius.map(|[one, other]| one.max(other)),
-        angle: args.blend.angle,
-        format,
-    };
-    match fusion::sharpen(model, &params, session.watch()) {
-        Ok(outcome) => Ok(Some(outcome)),
-        Err(Error::Sharpen(sharpen::Refusal::NotRounded { at })) if radius.is_some() && at == params.near[0] => {
-            Ok(None)
-        }
-        Err(e) => Err(refused(&args.input, &e)),
-    }
 }
 
 fn refused(input: &PathBuf, error: &Error) -> Failure {

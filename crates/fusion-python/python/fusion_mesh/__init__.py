@@ -8,6 +8,7 @@ True
 
 from __future__ import annotations
 
+from ._document import Cache, Document, Evaluation
 from ._edges import Edges, edges
 from ._errors import (
     FusionError,
@@ -27,7 +28,10 @@ from ._operations import __all__ as _operations
 from ._result import Origins, Result
 
 __all__ = [
+    "Cache",
+    "Document",
     "Edges",
+    "Evaluation",
     "FusionError",
     "FusionWarning",
     "InfeasibleError",

@@ -17,6 +17,7 @@ __all__ = [
     "detail",
     "difference",
     "intersection",
+    "pose",
     "remesh",
     "sharpen",
     "union",
@@ -975,3 +976,66 @@ def remesh(
         "smooth": smooth,
     }
     return run("remesh", [mesh], ["mesh"], options, precision, threads, progress)
+
+
+def pose(
+    mesh: MeshLike,
+    *,
+    scale: float = 1.0,
+    rotate: Optional[Union[Table, Tuple[Point, float]]] = None,
+    translate: Optional[Point] = None,
+    drop: Optional[MeshLike] = None,
+    threads: Optional[int] = None,
+    progress: Progress = None,
+) -> Result:
+    """Move a mesh: scale it, turn it, shift it, set it down on another.
+
+    Parameters
+    ----------
+    mesh : mesh-like
+        Anything that `as_mesh` takes.
+    scale : number above 0, default 1
+        Scale about the origin, first.
+    rotate : tables of angle (number), axis (x, y, z), optional
+        Turn about an axis through the origin by degrees, counter-clockwise seen against the axis; after scaling.
+    translate : x, y, z, optional
+        Shift, after turning.
+    drop : path, optional
+        Set it down on this mesh, last of all: along z, to where it would come to rest from high above, whether it
+        stands above, within or below.
+    threads : int, optional
+        Number of threads; all processors where not given. The result has the same bits for any number.
+    progress : callable or bool, optional
+        Called with a stage's name and the share of it that is done; ends the job by an exception or by returning ``False``.
+        ``True`` shows a bar.
+
+    Returns
+    -------
+    Result
+        The mesh, the report, and where every vertex and face came from.
+
+    Raises
+    ------
+    UsageError
+        An option has a value that it cannot have.
+    InputError
+        A mesh is not one, or a file cannot be read.
+    InfeasibleError
+        It is impossible on this input; says where and why.
+    InvalidResultError
+        The result failed its own validation.
+
+    Examples
+    --------
+    >>> import fusion_mesh as fm
+    >>> moved = fm.pose(fm.box((1, 1, 1)), rotate=((0, 0, 1), 45), translate=(0, 0, 2))
+    >>> round(float(moved.vertices[:, 0].max()), 9)
+    0.707106781
+    """
+    options: Dict[str, Any] = {
+        "scale": scale,
+        "rotate": rotate,
+        "translate": translate,
+        "drop": drop,
+    }
+    return run("pose", [mesh], ["mesh"], options, "f64", threads, progress)

@@ -94,11 +94,23 @@ def _loops(value: Any, _: List[Part]) -> Any:
     return [loop if isinstance(loop, str) else ":".join(str(int(number)) for number in loop) for loop in listed]
 
 
-def _solid(value: Any, _: List[Part]) -> Any:
+def _within(value: Any, _: List[Part]) -> Any:
+    return _solid(value, "within")
+
+
+def _drop(value: Any, _: List[Part]) -> Any:
+    return _solid(value, "drop")
+
+
+def _solid(value: Any, name: str) -> Any:
     if isinstance(value, str) or hasattr(value, "__fspath__"):
         return value
-    mesh = as_mesh(value, "within")
+    mesh = as_mesh(value, name)
     return {"positions": mesh.vertices, "faces": mesh.faces}
+
+
+def _rotation(value: Any, _: List[Part]) -> Any:
+    return value if isinstance(value, dict) or len(value) != 2 else {"axis": value[0], "angle": value[1]}
 
 
 def _sources(value: Any, inputs: List[Part]) -> Any:
@@ -129,6 +141,7 @@ def _seams(value: Any, _: List[Part]) -> Any:
 
 _CONVERSIONS = {
     "along": _points,
+    "drop": _drop,
     "ids": _list,
     "loops": _loops,
     "near": _points,
@@ -136,9 +149,10 @@ _CONVERSIONS = {
     "plane": _plane,
     "profile_at": _list,
     "radius_at": _list,
+    "rotate": _rotation,
     "seams": _seams,
     "silhouette": _list,
     "source": _sources,
     "target": _target,
-    "within": _solid,
+    "within": _within,
 }

@@ -87,7 +87,10 @@ impl Task {
             Action::Cut(operation) => cut(first, &operation.params(format)?, watch),
             Action::Boolean(operation) => join(&models, &operation.params(diagonal, format)?, watch),
             Action::Compose(operation) => compose(&models, &operation.numbered(diagonal, format)?, watch),
-            Action::Blend(operation) => round(first, &operation.params(diagonal, format)?, watch),
+            Action::Blend(operation) => match operation.sharpened(first, diagonal, format, watch)? {
+                Some(outcome) => Ok(outcome),
+                None => round(first, &operation.params(diagonal, format)?, watch),
+            },
             Action::Sharpen(operation) => sharpen::sharpen(first, &operation.params(diagonal, format)?, watch),
             Action::Cluster(operation) => Ok(cluster(first, &operation.params(format)?, watch)?.outcome),
             Action::Remesh(operation) => remeshing::remesh(first, &operation.params(diagonal, format)?, watch),

@@ -10,7 +10,7 @@ use super::{Length, Near, Precision, Radius, RadiusAt};
 use crate::blend::Limit;
 use crate::choice::{self, Choice};
 use crate::features::{self, Convexity};
-use crate::{Error, Outcome, Picked, parts_of_faces, picked_from_text, round};
+use crate::{Error, Outcome, Picked, Profile, parts_of_faces, picked_from_text, round, sharpen};
 use glam::DVec3;
 use mesh_core::{Watch, bounds};
 use mesh_io::{Format, Model};
@@ -93,7 +93,9 @@ impl Options for Blend {
         } else {
             let named_otherwise = !self.ids.is_empty() || self.curves.is_some() || self.seams.is_some();
             let all = radii.count() == self.near.len() && !self.near.is_empty() && !named_otherwise;
-            ensure(all, "radius", || "a radius is needed, for all curves or for every point that names one".into())?;
+            ensure(all || self.sharpens(), "radius", || {
+                "a radius is needed, for all curves or for every point that names one".into()
+            })?;
         }
         let angle = self.angle > 0.0 && self.angle < 180.0;
         ensure(angle, "angle", || "an angle is a number of degrees between 0 and 180".into())?;
@@ -123,11 +125,52 @@ impl Options for Blend {
 impl Blend {
     /// Blends the chosen feature curves of a solid, all at once; lengths may be a share of its diagonal.
     ///
+    /// With the profile `sharp` and points on fillets, these are taken back to edges.
+    ///
     /// # Errors
-    /// [`Error::Option`] for an option out of its range; else as [`round`].
+    /// [`Error::Option`] for an option out of its range; else as [`round`] or [`sharpen()`](crate::sharpen()).
     pub fn run(&self, part: &Model, precision: Precision, watch: &Watch) -> Result<Outcome, Error> {
-        let params = self.params(bounds(&part.mesh).diagonal(), precision.into())?;
-        round(part, &params, watch)
+        let (diagonal, format) = (bounds(&part.mesh).diagonal(), precision.into());
+        self.validate()?;
+        match self.sharpened(part, diagonal, format, watch)? {
+            Some(outcome) => Ok(outcome),
+            None => round(part, &self.params(diagonal, format)?, watch),
+        }
+    }
+
+    /// The mesh with its fillets at the points taken back to edges. `None` unless the profile is `sharp` and points say where, and
+    /// if the first point is on no fillet and there is a radius, which then means a blend with a sharp section along feature curves.
+    ///
+    /// # Errors
+    /// As [`sharpen()`](crate::sharpen()).
+    pub fn sharpened(
+        &self,
+        part: &Model,
+        diagonal: f64,
+        format: Format,
+        watch: &Watch,
+    ) -> Result<Option<Outcome>, Error> {
+        if !self.sharpens() {
+            return Ok(None);
+        }
+        let radius = self.radius.map(|r| r.sides().map(|r| r.resolve(diagonal)));
+        let params = sharpen::Params {
+            near: self.near.iter().map(|n| n.at).collect(),
+            radius: radius.map(|[one, other]| one.max(other)),
+            angle: self.angle,
+            format,
+        };
+        match sharpen::sharpen(part, &params, watch) {
+            Ok(outcome) => Ok(Some(outcome)),
+            Err(Error::Sharpen(sharpen::Refusal::NotRounded { at })) if radius.is_some() && at == params.near[0] => {
+                Ok(None)
+            }
+            Err(e) => Err(e),
+        }
+    }
+
+    fn sharpens(&self) -> bool {
+        self.profile == Profile::Sharp.into() && !self.near.is_empty() && self.curves.is_none()
     }
 
     /// The largest radius at which the chosen curves can be blended; see [`round::max_radius`].
@@ -212,6 +255,19 @@ mod tests {
             assert_eq!(operation.validate().map_err(|e| e.option), Err(option), "{operation:?}");
         }
         assert_eq!(radius().validate(), Ok(()));
+    }
+
+    #[test]
+    fn a_fillet_is_taken_back_by_a_sharp_profile() {
+        let cube = mesh_core::shapes::cuboid(DVec3::ONE);
+        let near = |x: f64| vec![Near::from(DVec3::new(x, x, 0.0))];
+        let run = |blend: Blend, part: &Model| blend.run(part, Precision::F64, &Watch::default());
+        let round = run(Blend::default().with_radius(0.2).with_near(near(0.5)), &cube.into()).unwrap().model;
+        let sharp = run(Blend::default().with_profile(Profile::Sharp).with_near(near(0.45)), &round).unwrap();
+        assert!((mesh_core::volume(&sharp.model.mesh) - 1.0).abs() < 1e-12);
+        // A flat face is no fillet.
+        let flat = Blend::default().with_profile(Profile::Sharp).with_near(vec![DVec3::new(0.0, 0.0, 0.5).into()]);
+        assert!(matches!(run(flat, &round), Err(Error::Sharpen(sharpen::Refusal::NotRounded { .. }))));
     }
 
     /// A document holds a blend whole, and nothing that is no option.
