@@ -1,6 +1,6 @@
 //! Everything a change must pass, in order of how fast it fails.
 
-use crate::{Fault, python_tests, regress, root, tidy};
+use crate::{Fault, python_tests, regress, root, studio, tidy};
 use mesh_core::Stopwatch;
 use std::process::Command;
 
@@ -18,6 +18,7 @@ pub fn run() -> Result<(), Fault> {
     }
     cargo(&["test", "--workspace"])?;
     python_tests::run()?;
+    studio::test()?;
     // Packs every crate as it would be published, without building it again.
     cargo(&["package", "--workspace", "--exclude", "xtask", "--no-verify", "--allow-dirty", "--quiet"])?;
     regress::run(&regress::Options::default())?;
