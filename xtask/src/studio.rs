@@ -1,6 +1,6 @@
 //! Builds the studio's page, and drives it in a browser.
 
-use crate::{Fault, binary, root};
+use crate::{Fault, binary, root, walk};
 use mesh_core::Stopwatch;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -38,7 +38,7 @@ pub fn test() -> Result<(), Fault> {
     build()?;
     let (studio, cli) = (binary("fusion-studio")?, binary("fusion-cli")?);
     let mut tests = Command::new("node");
-    tests.args(["--test", "--test-concurrency=1", "--test-reporter=spec", "tests/"]).current_dir(page());
+    tests.args(["--test", "--test-concurrency=1", "--test-reporter=spec"]).args(scenarios()).current_dir(page());
     tests.env("FUSION_STUDIO", studio).env("FUSION_CLI", cli).env(BROWSER, browser);
     tests.env("FUSION_STUDIO_PICTURES", target().join("studio-pictures"));
     let mut running = tests.spawn()?;
@@ -58,6 +58,14 @@ pub fn test() -> Result<(), Fault> {
     }
     println!("ci: studio: {:.0} s", start.elapsed().as_secs_f64());
     Ok(())
+}
+
+/// The files of scenarios, in order of name.
+fn scenarios() -> Vec<PathBuf> {
+    let mut files = vec![];
+    walk(&page().join("tests"), &mut files);
+    files.retain(|file| file.to_string_lossy().ends_with(".test.mjs"));
+    files
 }
 
 /// Says that there was nothing to do, or fails if that was insisted on.

@@ -14,11 +14,14 @@ export class Actions {
 
   /** Asks the server; what it refuses is shown, and the answer is then undefined. */
   async ask<T = Json>(what: string, keys: object = {}): Promise<T | undefined> {
+    this.store.asking++;
     try {
       return await this.server.ask<T>(what, keys);
     } catch (refusal) {
       this.refused(refusal);
       return undefined;
+    } finally {
+      this.store.asking--;
     }
   }
 
@@ -44,6 +47,7 @@ export class Actions {
   }
 
   async remedy(remedy: Remedy) {
+    if (!remedy.edit) return;
     const { do: what, ...keys } = remedy.edit;
     this.dismiss();
     await this.ask(what, keys);
@@ -77,7 +81,7 @@ export class Actions {
   /** Adds a step on the selected shapes, or on these. */
   async addStep(verb: string, of = this.store.shapes, options: Options = {}) {
     const as = this.store.freshName(verb);
-    const made = await this.ask<{ index?: number }>('add_step', { do: verb, of, as, options });
+    const made = await this.ask<{ index?: number }>('add_step', { verb, of, as, options });
     if (!made) return undefined;
     const row: Row = { table: 'step', index: made.index ?? this.store.document.steps.length - 1 };
     this.store.select([row]);
@@ -89,17 +93,44 @@ export class Actions {
     return ++this.drags + Date.now();
   }
 
+  /** How a row is named in requests: primitives by name, all others by number. */
+  private address(row: Row): { table: Table; index?: number; name?: string } {
+    const name = this.store.primitive(row);
+    return name === undefined ? { table: row.table, index: row.index } : { table: row.table, name };
+  }
+
+  /** Adds a primitive for parts to ride on. */
+  async addPrimitive() {
+    const size = this.store.drawnSize();
+    const name = this.store.freshName('cylinder');
+    const length = (share: number) => Number((size * share).toPrecision(2));
+    const options = { shape: 'cylinder', radius: length(0.2), height: length(0.5) };
+    if (!(await this.ask('add_primitive', { name, options }))) return;
+    const index = Object.keys(this.store.document.primitives).indexOf(name);
+    if (index >= 0) this.store.select([{ table: 'primitive', index }]);
+  }
+
+  /** Several values at once, undone together. */
+  setAll(row: Row, values: Options, drag?: number) {
+    const edits = Object.entries(values).map(([key, value]) => ({ table: row.table, index: row.index, key, value }));
+    return this.ask<{ version?: number }>('set_all', { edits, ...(drag === undefined ? {} : { drag }) });
+  }
+
+  rename(row: Row, to: string) {
+    return this.ask('rename', { table: row.table, index: row.index, to });
+  }
+
   set(row: Row, key: string, value: Json, drag?: number) {
-    return this.ask('set', { table: row.table, index: row.index, key, value, ...(drag === undefined ? {} : { drag }) });
+    return this.ask<{ version?: number }>('set', { ...this.address(row), key, value, ...(drag === undefined ? {} : { drag }) });
   }
 
   async removeSelected() {
     // Last rows first, so that the numbers of the others stay.
     const rows = [...this.store.selection].sort((a, b) => b.index - a.index);
-    const order: Table[] = ['output', 'step', 'part'];
+    const order: Table[] = ['output', 'step', 'part', 'primitive'];
     rows.sort((a, b) => order.indexOf(a.table) - order.indexOf(b.table));
     this.store.select([]);
-    for (const row of rows) await this.ask('remove', { table: row.table, index: row.index });
+    for (const address of rows.map((row) => this.address(row))) await this.ask('remove', address);
   }
 
   async undo() {

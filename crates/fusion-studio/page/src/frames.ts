@@ -11,7 +11,8 @@ interface ArrayEntry {
 interface Header {
   frame: string;
   shape: string;
-  revision: number;
+  revision: string;
+  what?: string;
   origin?: Vector;
   arrays: ArrayEntry[];
 }
@@ -32,7 +33,7 @@ export function decode(buffer: ArrayBuffer): Frame {
   const { shape, revision } = header;
   if (header.frame !== 'mesh') {
     const values = arrays.get('values') as Float32Array;
-    return { field: { field: header.frame, shape, revision, values } };
+    return { field: { field: header.what ?? header.frame, shape, revision, values } };
   }
   const positions = arrays.get('positions') as Float32Array;
   const faces = arrays.get('faces') as Uint32Array;

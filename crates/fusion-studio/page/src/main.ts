@@ -25,6 +25,7 @@ import type { ServerEvent } from './protocol';
 import { Radius } from './radius';
 import { Seams } from './seams';
 import { Store } from './store';
+import { Verbs } from './verbs';
 import { Section } from './view/section';
 import { View } from './view/view';
 import { receive } from './receive';
@@ -52,19 +53,22 @@ async function start() {
   const view = new View(find('view'), store, actions, radius, seams);
   const points = new Points(store, actions, view, find('hint'));
   const dialogs = new Dialogs(store, actions);
+  const verbs = new Verbs(store, actions, points);
   const section: Section = new Section(view.stage, find('section'), store, () => {
     const { plane } = section;
     if (plane) void actions.addStep('cut', store.shapes, { plane }).then(() => {
       store.look.section = false;
       store.changed('look');
     });
-  });
+  }, verbs.cutAlongPath);
   const context: Context = {
     pickPoints: (take, hint) => points.take(take, hint),
+    names: (key) => (key === 'primitive' ? Object.keys(store.document.primitives) : key === 'to' || key === 'part' ? store.document.parts.map((p) => p.name) : []),
+    drawStroke: (drawn) => points.draw(drawn),
     sectionPlane: () => section.plane,
     unfolded: new Set(),
   };
-  toolbar(find('toolbar'), store, actions, words, dialogs);
+  toolbar(find('toolbar'), store, actions, words, { ...dialogs, verb: verbs.run });
   tree(find('tree'), store, actions, { ...dialogs, focus: () => view.focus() });
   properties(find('properties'), store, actions, words, context, () => seamCard(store, radius, view.flyTo));
   text(find('document'), store, actions);

@@ -5,19 +5,22 @@ export type Json = null | boolean | number | string | Json[] | { [key: string]: 
 export type Options = { [key: string]: Json };
 
 /** The tables of a document that can be edited. */
-export type Table = 'part' | 'step' | 'output' | 'parameters';
+export type Table = 'part' | 'step' | 'output' | 'primitive';
 
-export interface Part extends Options {
+export interface Part {
   index: number;
   name: string;
   mesh: string;
+  /** The keys of its pose, as they are written. */
+  pose: Options;
 }
 
 export interface Step {
   index: number;
   do: string;
   of: string[];
-  as: string | null;
+  /** The name of its result. */
+  as: string;
   off: boolean;
   options: Options;
 }
@@ -30,11 +33,13 @@ export interface Output {
 
 export interface DocumentEvent {
   event: 'document';
+  version: number;
   text: string;
   path: string | null;
   parts: Part[];
   steps: Step[];
   outputs: Output[];
+  primitives: { [name: string]: Options };
   parameters: Options;
   can_undo: boolean;
   can_redo: boolean;
@@ -43,14 +48,15 @@ export interface DocumentEvent {
 
 export interface EvaluatedShape {
   name: string;
-  revision: number;
-  closed: boolean;
+  revision: string;
+  closed: boolean | null;
+  crossings: number | null;
   faces: number;
   vertices: number;
 }
 
 export interface EvaluatedStep {
-  number: number;
+  index: number;
   name: string;
   known: boolean;
   report: Json;
@@ -58,6 +64,7 @@ export interface EvaluatedStep {
 
 export interface EvaluatedEvent {
   event: 'evaluated';
+  version: number;
   milliseconds: number;
   steps: EvaluatedStep[];
   shapes: EvaluatedShape[];
@@ -65,7 +72,7 @@ export interface EvaluatedEvent {
 
 export interface Remedy {
   label: string;
-  edit: { do: string; [key: string]: Json };
+  edit?: { do: string; [key: string]: Json } | null;
 }
 
 /** A sentence with its place and its way out. */
@@ -77,6 +84,7 @@ export interface Failure {
 
 export interface FailedEvent extends Failure {
   event: 'failed';
+  version: number;
   step?: number | null;
 }
 
@@ -85,11 +93,14 @@ export type ServerEvent =
   | EvaluatedEvent
   | FailedEvent
   | { event: 'progress'; stage: string; fraction: number | null }
-  | { event: 'cancelled' };
+  | { event: 'cancelled'; version: number }
+  | { event: 'autosave'; path: string };
 
 /** A feature curve, a seam or a boundary loop, with points relative to the drawing origin of its shape. */
 export interface Curve {
   id: number;
+  /** The shape that a loop belongs to. */
+  shape?: string;
   length: number;
   closed: boolean;
   convex?: boolean;
@@ -97,14 +108,15 @@ export interface Curve {
   seam?: boolean;
   points: Vector[];
   /** A point of the curve in model units, which names it in options such as `near`. */
+  near?: Vector;
+  /** A point of a loop in model units. */
   at?: Vector;
-  /** The same point relative to the drawing origin. */
-  middle?: Vector;
   /** The normals of both sides there. */
   normals?: [Vector, Vector];
 }
 
 export interface Curves {
+  revision?: string;
   origin: Vector;
   curves: Curve[];
 }
@@ -125,7 +137,7 @@ export interface Pick {
 /** A mesh as the server sends it for drawing. */
 export interface MeshFrame {
   shape: string;
-  revision: number;
+  revision: string;
   origin: Vector;
   positions: Float32Array;
   faces: Uint32Array;
@@ -137,6 +149,6 @@ export interface MeshFrame {
 export interface FieldFrame {
   field: string;
   shape: string;
-  revision: number;
+  revision: string;
   values: Float32Array;
 }

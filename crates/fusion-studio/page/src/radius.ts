@@ -1,7 +1,7 @@
 // The radius of the picked curves: found in the step that blends them, or begun as a new blend.
 
 import { Pacer, type Actions } from './actions';
-import type { Json, MaxRadius, Step } from './protocol';
+import type { Json, MaxRadius, Options, Step } from './protocol';
 import type { Row, Store } from './store';
 
 /** Verbs whose steps have a radius of their own. */
@@ -72,13 +72,13 @@ export class Radius {
   private async send(value: number | null, drag: number | undefined) {
     const set = this.store.curves;
     if (!set) return;
-    const near = set.picked.map((c) => c.at).filter((at) => at !== undefined) as Json[];
+    const near = set.picked.map((c) => c.near).filter((at) => at !== undefined) as Json[];
     const some = near.length > 0 && near.length < set.curves.length;
     if (this.step && set.step !== null) {
       const row: Row = { table: 'step', index: set.step };
       const before = JSON.stringify(this.step.options.near ?? []);
-      if (some && JSON.stringify(near) !== before) await this.actions.set(row, 'near', near, drag);
-      await this.actions.set(row, 'radius', value, drag);
+      const values: Options = some && JSON.stringify(near) !== before ? { near, radius: value } : { radius: value };
+      await this.actions.setAll(row, values, drag);
       return;
     }
     if (value === null || this.begun) return;

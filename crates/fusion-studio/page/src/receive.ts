@@ -41,13 +41,18 @@ function event(event: ServerEvent, store: Store) {
     case 'failed':
       ended(store);
       store.failure = event;
+      store.failedVersion = event.version;
       store.say(event.sentence, 'error', event);
       store.changed('failure', 'work', 'evaluated');
       break;
     case 'cancelled':
       ended(store);
+      store.failedVersion = event.version;
       store.say('Cancelled.');
       store.changed('work');
+      break;
+    case 'autosave':
+      store.say(`A document that was not saved was found in ${event.path}; open it to go on.`);
       break;
   }
 }
@@ -67,7 +72,7 @@ function warnings(report: unknown, name: string, store: Store) {
 }
 
 function exists(row: Row, store: Store): boolean {
-  const { parts, steps, outputs } = store.document;
-  const length = row.table === 'part' ? parts.length : row.table === 'step' ? steps.length : outputs.length;
+  const { parts, steps, outputs, primitives } = store.document;
+  const length = row.table === 'primitive' ? Object.keys(primitives).length : row.table === 'part' ? parts.length : row.table === 'step' ? steps.length : outputs.length;
   return row.index < length;
 }

@@ -18,10 +18,11 @@ export class Seams {
   /** Asks for the curves if the selection or its shape changed. */
   private async renew() {
     const { store } = this;
-    if (!store.look.edges || store.selection.length > 1) return this.drop();
+    if (!store.look.edges) return this.drop();
+    if (store.selection.length > 1) return this.renewLoops();
     const row = store.focus;
     const step = store.step(row);
-    const shape = row ? store.shapeOf(row) : undefined;
+    const shape = row ? store.viewOf(row) : undefined;
     if (!row || !shape || row.table === 'output') return this.drop();
     const blends = step !== undefined && BLENDING.includes(step.do);
     const known = store.evaluated?.shapes.find((s) => s.name === shape);
@@ -33,8 +34,9 @@ export class Seams {
     const key = blends ? JSON.stringify([row.index, step.do, step.of, inputs, others]) : `${shape} ${known?.revision}`;
     if (key === this.asked) return;
     this.asked = key;
-    const kind = !blends && known && !known.closed ? 'loops' : 'features';
-    const answer = await this.ask(blends ? row.index : null, shape, kind);
+    const kind = !blends && known && known.closed === false ? 'loops' : 'features';
+    if (kind === 'loops') return this.takeLoops(key, [shape]);
+    const answer = await this.ask(blends ? row.index : null, shape);
     if (this.asked !== key) return;
     if (!answer) {
       // A step that failed has no curves now; it may have some after the next edit.
@@ -42,6 +44,9 @@ export class Seams {
       store.curves = undefined;
     } else {
       const picked = store.curves?.step === (blends ? row.index : null) && store.curves.shape === shape ? samePlaces(store.curves.picked, answer.curves) : [];
+      // Of a boolean only the seams are blended.
+      const seams = answer.curves.filter((curve) => curve.seam);
+      if (blends && step.do !== 'blend' && seams.length > 0) answer.curves = seams;
       store.curves = { ...answer, step: blends ? row.index : null, shape, kind, picked };
     }
     store.largest = undefined;
@@ -49,18 +54,43 @@ export class Seams {
     if (answer && (blends || store.curves?.picked.length)) void this.radius.askLargest();
   }
 
-  private async ask(step: number | null, shape: string, kind: 'features' | 'loops'): Promise<Curves | undefined> {
-    if (kind === 'loops') return this.answer('loops', { shape });
-    if (step !== null) return (await this.answer('curves', { step })) ?? this.answer('curves', { shape });
-    return this.answer('curves', { shape });
+  /** The loops of all selected shapes that have any. */
+  private async renewLoops() {
+    const { store } = this;
+    const shapes = store.shapes.filter((name) => store.evaluated?.shapes.some((s) => s.name === name && s.closed === false));
+    if (shapes.length === 0) return this.drop();
+    const key = JSON.stringify(shapes.map((name) => [name, store.evaluated?.shapes.find((s) => s.name === name)?.revision]));
+    if (key === this.asked) return;
+    this.asked = key;
+    await this.takeLoops(key, shapes);
   }
 
-  private async answer(what: string, keys: object): Promise<Curves | undefined> {
-    const answer = await this.actions.quietly<Curves | Curve[]>(what, keys);
+  private async takeLoops(key: string, shapes: string[]) {
+    const { store } = this;
+    const curves: Curve[] = [];
+    for (const shape of shapes) {
+      const answer = await this.answer('loops', shape);
+      const shift = (p: Vector): Vector => [p[0] + answer!.origin[0], p[1] + answer!.origin[1], p[2] + answer!.origin[2]];
+      for (const loop of answer?.curves ?? []) curves.push({ ...loop, shape, closed: true, points: loop.points.map(shift) });
+    }
+    if (this.asked !== key) return;
+    const was = store.curves?.kind === 'loops' ? store.curves.picked : [];
+    const picked = curves.filter((c) => was.some((old) => old.shape === c.shape && old.id === c.id));
+    store.curves = { origin: [0, 0, 0], curves, step: null, shape: shapes[0], kind: 'loops', picked };
+    store.largest = undefined;
+    store.changed('curves');
+  }
+
+  private async ask(step: number | null, shape: string): Promise<Curves | undefined> {
+    if (step !== null) return (await this.answer('curves', shape, { step })) ?? this.answer('curves', shape);
+    return this.answer('curves', shape);
+  }
+
+  private async answer(what: string, shape: string, keys: object = { shape }): Promise<Curves | undefined> {
+    const answer = await this.actions.quietly<Partial<Curves> & { loops?: Curve[] }>(what, keys);
     if (!answer) return undefined;
-    if (Array.isArray(answer)) return { origin: [0, 0, 0], curves: answer };
-    const listed = answer as Curves & { loops?: Curve[] };
-    return { origin: listed.origin ?? ([0, 0, 0] as Vector), curves: (listed.curves ?? listed.loops ?? []).map((c, i) => ({ ...c, id: c.id ?? i })) };
+    const origin = answer.origin ?? this.store.meshes.get(shape)?.origin ?? [0, 0, 0];
+    return { revision: answer.revision, origin, curves: answer.curves ?? answer.loops ?? [] };
   }
 
   private drop() {

@@ -41,7 +41,7 @@ export interface CurveSet extends Curves {
 }
 
 const noDocument: DocumentEvent = {
-  event: 'document', text: '', path: null, parts: [], steps: [], outputs: [], parameters: {},
+  event: 'document', version: 0, text: '', path: null, parts: [], steps: [], outputs: [], primitives: {}, parameters: {},
   can_undo: false, can_redo: false, shapes: [],
 };
 
@@ -58,11 +58,17 @@ export class Store {
   /** When the evaluation under way began. */
   workSince: number | undefined;
   failure: Failure | undefined;
+  /** The version of the document that failed last. */
+  failedVersion = -1;
+  /** Requests that are not answered yet. */
+  asking = 0;
   connected = false;
   /** What a click in the view means. */
   tool: 'select' | 'move' | 'rotate' | 'measure' | 'point' | 'path' = 'select';
   log: LogLine[] = [];
   look: Look = { wire: false, edges: true, colour: 'plain', grid: true, section: false, up: 'z' };
+  /** The size of what is drawn, for first values of lengths. */
+  drawnSize: () => number = () => 2;
   private listeners: [Change[], () => void][] = [];
 
   /** Calls back when one of these changes. */
@@ -98,6 +104,11 @@ export class Store {
     return this.selection.at(-1);
   }
 
+  /** The name of a primitive. */
+  primitive(row: Row | undefined): string | undefined {
+    return row?.table === 'primitive' ? Object.keys(this.document.primitives)[row.index] : undefined;
+  }
+
   part(row: Row | undefined): Part | undefined {
     return row?.table === 'part' ? this.document.parts[row.index] : undefined;
   }
@@ -110,12 +121,25 @@ export class Store {
   shapeOf(row: Row): string | undefined {
     if (row.table === 'part') return this.document.parts[row.index]?.name;
     if (row.table === 'output') return this.document.outputs[row.index]?.of ?? undefined;
-    const step = this.document.steps[row.index];
+    const step = this.step(row);
     return step && resultOf(step);
   }
 
-  /** The row that makes the latest shape of this name. */
+  /** The shape in the view that a row makes: a part that was taken up, and a step that was, are shown besides. */
+  viewOf(row: Row): string | undefined {
+    const name = this.shapeOf(row);
+    if (name === undefined || row.table === 'output') return name;
+    const latest = this.rowOf(name);
+    const isLatest = latest?.table === row.table && latest.index === row.index;
+    if (isLatest && this.document.shapes.includes(name)) return name;
+    return row.table === 'part' ? `part:${name}` : `step:${row.index}`;
+  }
+
+  /** The row that makes the latest shape of this name, or `part:NAME`, or `step:N`. */
   rowOf(shape: string): Row | undefined {
+    const [kind, rest] = [shape.slice(0, 5), shape.slice(5)];
+    if (kind === 'step:') return { table: 'step', index: Number(rest) };
+    if (kind === 'part:') return { table: 'part', index: this.document.parts.findIndex((p) => p.name === rest) };
     const step = this.document.steps.findLastIndex((s) => resultOf(s) === shape);
     if (step >= 0) return { table: 'step', index: step };
     const part = this.document.parts.findIndex((p) => p.name === shape);
@@ -130,14 +154,14 @@ export class Store {
 
   /** A name that nothing in the document has yet. */
   freshName(stem: string): string {
-    const taken = new Set([...this.document.parts.map((p) => p.name), ...this.document.steps.map(resultOf)]);
+    const taken = new Set([...Object.keys(this.document.primitives), ...this.document.parts.map((p) => p.name), ...this.document.steps.map(resultOf)]);
     let name = stem;
     for (let n = 2; taken.has(name); n++) name = `${stem}-${n}`;
     return name;
   }
 }
 
-/** The name of a step's result; a loop's number is no part of it. */
+/** The name of a step's result. */
 export function resultOf(step: Step): string {
-  return step.as ?? (step.of[0] ?? '').replace(/:\d+$/, '');
+  return step.as;
 }

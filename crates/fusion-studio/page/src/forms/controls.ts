@@ -8,8 +8,12 @@ import type { Field } from './schema';
 export interface Context {
   /** Lets the person click points on the model; each is given to `take` until that says stop. */
   pickPoints(take: (point: Vector) => 'more' | 'stop', hint: string): void;
+  /** Lets the person draw a stroke on the view. */
+  drawStroke(drawn: (stroke: Vector[], view: Vector) => void): void;
   /** The section plane as a point and a normal, if it is on. */
   sectionPlane(): { point: Vector; normal: Vector } | undefined;
+  /** Names that a text may be, such as those of primitives. */
+  names(key: string): string[];
   /** What was folded out before the form was drawn again. */
   unfolded: Set<string>;
 }
@@ -29,7 +33,7 @@ export function control(field: Field, value: Json, change: Change, context: Cont
     case 'vector': return vector(kind.size, value, change, context);
     case 'list': return list(field, kind.item, value, change, context);
     case 'group': return group(field, kind.fields, value, change, context);
-    case 'text': return suggesting(kind.suggestions, value, change);
+    case 'text': return suggesting([...kind.suggestions, ...context.names(field.key)], value, change);
     case 'json': return json(value, change);
   }
 }
@@ -108,8 +112,10 @@ function list(field: Field, item: Field, value: Json, change: Change, context: C
     box.append(button('target', 'Click points', 'Click points on the model, one after the other; Escape ends', () => context.pickPoints(take, `Click points for ${field.key}; Escape ends.`)));
   } else if (item.kind.is === 'group') {
     const { fields } = item.kind;
-    const point = fields.find((f) => f.kind.is === 'vector' && f.kind.size === 3);
-    if (point) {
+    const point = fields.find((f) => f.required && f.kind.is === 'vector' && f.kind.size === 3);
+    if (['stroke', 'view'].every((key) => fields.some((f) => f.key === key))) {
+      box.append(button('detail', 'Draw a stroke', 'Draw a silhouette on the view', () => context.drawStroke((stroke, view) => add({ view, stroke }))));
+    } else if (point) {
       const others = Object.fromEntries(fields.filter((f) => f.required && f !== point).map((f) => [f.key, blank(f)]));
       const take = (at: Vector) => (add({ ...others, [point.key]: at }), 'stop' as const);
       box.append(button('target', 'Click a place', 'Click a place on the model', () => context.pickPoints(take, `Click a place for ${field.key}.`)));

@@ -58,7 +58,7 @@ const NO_OPTIONS = ['do', 'of', 'as', 'off'];
 const NO_POSE = ['name', 'mesh'];
 /** The order in which a person looks for options; all others follow by name. */
 const FIRST = [
-  'radius', 'profile', 'near', 'translate', 'rotate', 'scale', 'on', 'plane', 'path', 'keep', 'loops', 'silhouette', 'edge_length',
+  'shape', 'radius', 'height', 'size', 'base', 'axis', 'profile', 'near', 'translate', 'rotate', 'scale', 'on', 'plane', 'path', 'keep', 'loops', 'silhouette', 'edge_length',
   'intensity', 'source', 'target', 'clusters', 'bulge', 'extent', 'radius_at', 'overlap',
 ];
 

@@ -28,8 +28,8 @@ export class Dialogs {
   };
 
   open = async () => {
-    const found = await this.actions.quietly<{ files?: string[] } | string[]>('files');
-    const files = (Array.isArray(found) ? found : (found?.files ?? [])).filter((f) => f.endsWith('.toml'));
+    const found = await this.actions.quietly<{ files: { path: string }[] }>('files');
+    const files = (found?.files ?? []).map((f) => f.path).filter((f) => f.endsWith('.toml'));
     const name = h('input', { type: 'text', placeholder: 'model.toml', spellcheck: false, name: 'path', value: files[0] ?? '' });
     const list = h('ul', { className: 'files' }, ...files.map((f) => h('li', { tabIndex: 0, onclick: () => (name.value = f) }, f)));
     const browse = button('open', 'From this computer…', 'Choose a document; its meshes must be below the studio’s folder', () => this.addParts());
@@ -58,16 +58,13 @@ export class Dialogs {
     const of = h('select', { name: 'of', onchange: () => rename() }, ...shapes.map((s) => h('option', { selected: s === chosen }, s)));
     const format = h('select', { name: 'format', onchange: () => rename() }, ...FORMATS.map((f) => h('option', {}, f)));
     const file = h('input', { type: 'text', name: 'file', spellcheck: false, value: `${chosen}.glb` });
-    const keep = h('input', { type: 'checkbox', name: 'keep', checked: true });
     const rename = () => (file.value = `${of.value}.${format.value}`);
     const row = (label: string, control: HTMLElement) => h('label', { className: 'row' }, h('span', { className: 'name' }, label), control);
-    this.show('Export a shape', h('div', { className: 'stack' }, row('shape', of), row('format', format), row('file', file), row('keep as an output of the document', keep)), 'Export', async () => {
+    this.show('Export a shape', h('div', { className: 'stack' }, row('shape', of), row('format', format), row('file', file), h('p', { className: 'hint' }, 'It becomes an output of the document, so that fusion-cli run writes the same file.')), 'Export', async () => {
       const request = { of: of.value, file: file.value.trim() };
       const written = await this.actions.ask<{ path?: string }>('export', request);
       if (!written) return false;
       const path = written.path ?? request.file;
-      const there = this.store.document.outputs.some((o) => o.file === request.file);
-      if (keep.checked && !there) await this.actions.ask('add_output', request);
       this.store.say(`Exported ${request.of} to ${path}.`);
       h('a', { href: fileAddress(path), download: path.split('/').pop() ?? path }).click();
       return true;

@@ -13,7 +13,7 @@ export function failureCard(host: HTMLElement, store: Store, actions: Actions, f
     fill(host, symbol('error'),
       h('p', {}, failure.sentence),
       h('div', { className: 'buttons' },
-        remedy && primary(button('apply', remedy.label, 'Apply this remedy', () => void actions.remedy(remedy))),
+        remedy?.edit && primary(button('apply', remedy.label, 'Apply this remedy', () => void actions.remedy(remedy))),
         place && button('target', 'Show the place', 'Fly to where it is', () => flyTo(place)),
         button('close', '', 'Close this message', () => actions.dismiss())));
   };

@@ -6,7 +6,7 @@ import { form, label } from '../forms/form';
 import type { Context } from '../forms/controls';
 import type { Vocabulary } from '../forms/schema';
 import { verbIcon } from '../icons';
-import type { Json, Options } from '../protocol';
+import type { Json } from '../protocol';
 import { resultOf, type Row, type Store } from '../store';
 
 /** Draws a card above the form, such as that of the picked curves. */
@@ -28,6 +28,7 @@ export function properties(host: HTMLElement, store: Store, actions: Actions, wo
     if (store.selection.length > 1) return several();
     if (row.table === 'part') return part(row);
     if (row.table === 'step') return step(row);
+    if (row.table === 'primitive') return primitive(row);
     return output(row);
   }
 
@@ -42,21 +43,25 @@ export function properties(host: HTMLElement, store: Store, actions: Actions, wo
     const part = store.part(row);
     if (!part) return undefined;
     const keys = ['translate', 'rotate', 'scale', 'on', 'snap', 'drop'];
-    const values: Options = {};
-    for (const field of words.pose) {
-      if (part[field.key] !== undefined && part[field.key] !== null) values[field.key] = part[field.key];
-    }
     const fields = [...words.pose].sort((a, b) => keys.indexOf(a.key) - keys.indexOf(b.key));
-    return h('section', {}, head('part', part.name, `Part, of the file ${part.mesh}`, (name) => void actions.set(row, 'name', name)),
-      h('h3', {}, 'Pose'), form(fields, values, (key, value) => void actions.set(row, key, value), context),
+    return h('section', {}, head('part', part.name, `Part, of the file ${part.mesh}`, (name) => void actions.rename(row, name)),
+      h('h3', {}, 'Pose'), form(fields, part.pose, (key, value) => void actions.set(row, key, value), context),
       remove());
+  }
+
+  function primitive(row: Row): HTMLElement | undefined {
+    const name = store.primitive(row);
+    const options = name === undefined ? undefined : store.document.primitives[name];
+    if (name === undefined || !options) return undefined;
+    return h('section', {}, h('header', {}, symbol('primitive'), h('div', {}, h('h2', {}, name), h('p', {}, 'A body for parts to ride on; it is not in the model itself. Give a part a place “on” it.'))),
+      form(words.primitive, options, (key, value) => void actions.set(row, key, value), context), remove());
   }
 
   function step(row: Row): HTMLElement | undefined {
     const step = store.step(row);
     if (!step) return undefined;
     const operation = words.operations.get(step.do);
-    const rename = (name: string) => void actions.set(row, 'as', name || null);
+    const rename = (name: string) => void (name && actions.rename(row, name));
     return h('section', {}, head(step.do, resultOf(step), operation?.description ?? '', rename),
       h('h3', {}, 'Of'), inputs(row, step.of),
       h('h3', {}, `Options of ${label(step.do)}`),

@@ -18,6 +18,7 @@ export interface Dialogs {
   save(): void;
   exportShape(): void;
   help(): void;
+  verb(verb: string): void;
 }
 
 export function toolbar(host: HTMLElement, store: Store, actions: Actions, words: Vocabulary, dialogs: Dialogs) {
@@ -26,7 +27,7 @@ export function toolbar(host: HTMLElement, store: Store, actions: Actions, words
   const redo = button('redo', '', 'Redo (Ctrl+Shift+Z)', () => void actions.redo());
   const title = h('span', { className: 'document' });
   const verbButtons = verbs.map((verb) => {
-    const element = button(verbIcon(verb), capital(verb), words.operations.get(verb)?.description ?? verb, () => void actions.addStep(verb));
+    const element = button(verbIcon(verb), capital(verb), words.operations.get(verb)?.description ?? verb, () => dialogs.verb(verb));
     element.dataset.verb = verb;
     return element;
   });

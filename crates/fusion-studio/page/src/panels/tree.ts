@@ -9,11 +9,14 @@ import { verbIcon } from '../icons';
 
 export function tree(host: HTMLElement, store: Store, actions: Actions, dialogs: { addParts(): void; addOutput(): void; focus(): void }) {
   const draw = () => {
-    const { parts, steps, outputs } = store.document;
+    const { parts, steps, outputs, primitives } = store.document;
+    const ridden = Object.entries(primitives);
     fill(host,
       heading('Parts', 'add', 'Add mesh files as parts', dialogs.addParts),
       list(parts.map((part, index) => item({ table: 'part', index }, part.name, file(part.mesh), dot(index)))),
       parts.length === 0 && h('p', { className: 'hint' }, 'Drop mesh files on the view, or press +.'),
+      heading('Primitives', 'add', 'Add a cylinder, cone, box or sphere for parts to ride on', () => void actions.addPrimitive()),
+      list(ridden.map(([name, options], index) => item({ table: 'primitive', index }, name, String(options.shape ?? ''), symbol('primitive')))),
       h('h3', {}, 'Steps'),
       list(steps.map((step, index) => item({ table: 'step', index }, resultOf(step), `${step.do} · ${step.of.join(', ')}`, symbol(verbIcon(step.do)), step.off))),
       steps.length === 0 && parts.length > 0 && h('p', { className: 'hint' }, 'Select shapes, then press a verb above, such as Union.'),

@@ -1,7 +1,7 @@
 // The rolling ball at the picked curve: shows the radius in place, and is pulled to change it.
 
 import { Mesh, MeshPhongMaterial, SphereGeometry, Vector3 } from 'three';
-import type { Curve, Vector } from '../protocol';
+import type { Curve } from '../protocol';
 import type { Stage } from './stage';
 
 export class Ball {
@@ -21,13 +21,12 @@ export class Ball {
   }
 
   /** Draws the ball at the middle of a curve, on both of its sides. */
-  show(curve: Curve | undefined, origin: Vector, radius: number) {
-    const shown = curve !== undefined && radius > 0 && curve.normals !== undefined;
+  show(curve: Curve | undefined, radius: number) {
+    const shown = curve !== undefined && radius > 0 && curve.normals !== undefined && curve.near !== undefined;
     this.mesh.visible = shown;
     if (shown) {
-      const middle = curve.middle ?? curve.points[curve.points.length >> 1];
       const [a, b] = curve.normals!.map((n) => new Vector3(...n));
-      this.contact.set(...middle).add(new Vector3(...origin));
+      this.contact.set(...curve.near!);
       // The ball touches both sides: outside of a valley, inside of a ridge.
       this.towards.copy(a).add(b).divideScalar(Math.max(0.05, 1 + a.dot(b)));
       if (curve.convex) this.towards.negate();

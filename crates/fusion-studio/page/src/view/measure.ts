@@ -38,7 +38,7 @@ export class Measure {
     }
     const a = this.first;
     this.first = undefined;
-    const request = { shape: a.shape, shape_b: hit.shape, face_a: a.face, bary_a: a.bary, face_b: hit.face, bary_b: hit.bary };
+    const request = { shape_a: a.shape, shape_b: hit.shape, face_a: a.face, bary_a: a.bary, face_b: hit.face, bary_b: hit.bary };
     const measured = await this.actions.ask<Measured>('measure', request);
     if (!measured) return this.clear();
     const angle = measured.angle === undefined || measured.angle === null ? '' : ` · ${number(measured.angle, 4)}° between the faces`;

@@ -17,7 +17,7 @@ export class Section {
     new MeshBasicMaterial({ color: 0x4c9be8, transparent: true, opacity: 0.12, side: DoubleSide, depthWrite: false }),
   );
 
-  constructor(private stage: Stage, private bar: HTMLElement, private store: Store, private cut: () => void) {
+  constructor(private stage: Stage, private bar: HTMLElement, private store: Store, private cut: () => void, private path: () => void) {
     this.sheet.visible = false;
     // The plane must not cut itself away.
     (this.sheet.material as MeshBasicMaterial).clippingPlanes = [];
@@ -57,11 +57,16 @@ export class Section {
     const cut = button('cut', 'Cut here', 'Cut the selected shape off at this plane; what is hidden goes', this.cut);
     cut.disabled = this.store.shapes.length !== 1;
     if (cut.disabled) cut.title += '. Select one shape first.';
+    const path = button('target', 'Click a path', 'Cut along a path over the surface instead: click places round a limb', this.path);
+    path.disabled = cut.disabled;
     fill(this.bar, h('span', { className: 'name' }, 'Section'), ...axes, slider, button('flip', '', 'The other side', () => {
       this.normal.negate();
       this.share = 1 - this.share;
       this.draw();
-    }), cut);
+    }), cut, path, button('close', '', 'Without the section plane (C)', () => {
+      this.store.look.section = false;
+      this.store.changed('look');
+    }));
   }
 
   private along(axis: Axis) {

@@ -3,7 +3,7 @@
 import { Matrix4, Sphere, Vector3 } from 'three';
 import type { Actions } from '../actions';
 import { Pacer } from '../actions';
-import type { Options, Vector } from '../protocol';
+import type { Curve, Options, Vector } from '../protocol';
 import type { Radius } from '../radius';
 import type { Seams } from '../seams';
 import type { Row, Store } from '../store';
@@ -14,7 +14,11 @@ import { Marker } from './marker';
 import { Measure } from './measure';
 import { Pointer } from './pointer';
 import { shapeColour, Shapes, type Hit, type Manner } from './shapes';
+import { Labels } from './labels';
+import { Primitives } from './primitives';
+import { sides } from './sides';
 import { Stage } from './stage';
+import { Stroke } from './stroke';
 
 /** Keys of a part that set it somewhere by other means than handles. */
 const PLACED = ['on', 'snap', 'drop'];
@@ -27,14 +31,18 @@ export class View {
   readonly gizmo: Gizmo;
   readonly measure: Measure;
   readonly marker: Marker;
+  readonly stroke: Stroke;
+  private labels: Labels;
+  private primitives: Primitives;
   /** Takes the places that are clicked while the tool is `point`. */
   onPoint: ((hit: Hit) => void) | undefined;
   private moves: Pacer<{ row: Row; pose: Options; drag: number }>;
   private drag: number | undefined;
+  private sides = new WeakMap<Curve, [Vector, Vector]>();
   private shownGhosts = '';
   private fields = '';
 
-  constructor(host: HTMLElement, private store: Store, private actions: Actions, private radius: Radius, seams: Seams) {
+  constructor(host: HTMLElement, private store: Store, private actions: Actions, private radius: Radius, private seams: Seams) {
     this.stage = new Stage(host);
     this.shapes = new Shapes(this.stage);
     this.lines = new CurveLines(this.stage);
@@ -42,8 +50,11 @@ export class View {
     this.gizmo = new Gizmo(this.stage);
     this.measure = new Measure(this.stage, actions, host);
     this.marker = new Marker(this.stage);
+    this.primitives = new Primitives(this.stage);
+    this.stroke = new Stroke(this.stage);
+    this.labels = new Labels(this.stage, host);
     this.moves = new Pacer(({ row, pose, drag }) => void this.sendPose(row, pose, drag), 250);
-    radius.diagonal = () => 2 * this.stage.bounds().radius;
+    radius.diagonal = store.drawnSize = () => 2 * this.stage.bounds().radius;
     radius.onDrag = (value) => this.ball.resize(value);
     new Pointer(this.stage, this.shapes, this.lines, this.ball, this.gizmo, radius, store, {
       shape: (hit, more) => this.clicked(hit, more),
@@ -58,6 +69,7 @@ export class View {
     store.on(['selection', 'mesh', 'tool', 'document'], () => this.drawGizmo());
     store.on(['curves', 'look'], () => this.drawCurves());
     store.on(['document'], () => this.drawBall());
+    store.on(['document', 'selection'], () => this.primitives.show(store.document.primitives, store.primitive(store.focus)));
     store.on(['look', 'evaluated'], () => this.drawLook());
     store.on(['tool'], () => store.tool !== 'measure' && this.measure.clear());
     addEventListener('theme', () => this.stage.recolour());
@@ -65,7 +77,7 @@ export class View {
 
   /** Shows what is selected, or everything. */
   focus() {
-    const sphere = this.sphereOf(this.store.shapes);
+    const sphere = this.sphereOf(this.store.selection.map((row) => this.store.viewOf(row) ?? ''));
     this.stage.frame(sphere ?? this.stage.bounds());
   }
 
@@ -76,7 +88,7 @@ export class View {
 
   /** A shape that has come into the view is shown as a whole. */
   welcome(shape: string) {
-    if (this.stage.content.children.length === 1) return this.fit();
+    if (this.shapes.names.length === 1) return this.fit();
     const sphere = this.sphereOf([shape]);
     this.stage.setGrid(this.store.look.grid);
     if (sphere && (this.stage.flying || !this.stage.sees(sphere))) this.fit();
@@ -105,7 +117,7 @@ export class View {
     const { store } = this;
     const manners = new Map<string, Manner>();
     const failed = store.failure !== undefined && (store.failure as { event?: string }).event === 'failed';
-    const selected = store.shapes;
+    const selected = store.selection.map((row) => store.viewOf(row));
     const shown = new Set([...store.document.shapes, ...store.ghosts]);
     for (const name of this.shapes.names) {
       if (!shown.has(name)) continue;
@@ -125,7 +137,7 @@ export class View {
   /** Selected parts that a step has taken up are shown as ghosts, so that they can be moved. */
   private async askGhosts() {
     const { store } = this;
-    const names = store.selection.filter((row) => row.table === 'part').map((row) => store.shapeOf(row)).filter((n): n is string => n !== undefined && !store.document.shapes.includes(n));
+    const names = store.selection.map((row) => store.viewOf(row)).filter((n): n is string => n !== undefined && /^(part|step):/.test(n));
     const key = names.join('\n');
     if (key === this.shownGhosts) return;
     this.shownGhosts = key;
@@ -139,16 +151,17 @@ export class View {
     const row = store.focus;
     const part = store.part(row);
     const turning = store.tool === 'rotate';
-    const free = part && PLACED.every((key) => part[key] === undefined || part[key] === null);
+    const free = part && PLACED.every((key) => part.pose[key] === undefined);
     if (!row || !part || !free || !(turning || store.tool === 'move')) return gizmo.detach();
-    const object = this.shapes.object(part.name);
-    const sphere = this.sphereOf([part.name]);
+    const object = this.shapes.object(store.viewOf(row) ?? part.name);
+    const sphere = this.sphereOf([store.viewOf(row) ?? part.name]);
     if (!object || !sphere) return gizmo.detach();
     const start = object.matrix.clone();
-    const pose: Options = { translate: part.translate ?? null, rotate: part.rotate ?? null, scale: part.scale ?? null };
+    const { pose } = part;
+    const shape = store.viewOf(row) ?? part.name;
     gizmo.attach(object, sphere.center, pose, turning ? 'rotate' : 'translate', (next, ends) => {
       this.drag ??= this.actions.newDrag();
-      this.preview(part.name, start, pose, next as Options);
+      this.preview(shape, start, pose, next as Options);
       this.moves.push({ row, pose: next as Options, drag: this.drag });
       if (ends) this.drag = undefined;
     });
@@ -164,20 +177,39 @@ export class View {
   }
 
   private async sendPose(row: Row, pose: Options, drag: number) {
-    for (const [key, value] of Object.entries(pose)) await this.actions.set(row, key, value, drag);
+    await this.actions.setAll(row, pose, drag);
   }
 
   private drawCurves() {
-    this.lines.show(this.store.curves, this.store.look.edges);
+    const set = this.store.curves;
+    this.lines.show(set, this.store.look.edges);
+    const loops = set?.kind === 'loops' && this.store.look.edges ? set.curves : [];
+    this.labels.show(loops.map((loop) => ({
+      text: String(loop.id), place: new Vector3(...loop.at!), on: set!.picked.includes(loop), click: (more) => this.seams.pick(loop, more),
+    })));
     this.drawBall();
   }
 
+  /** Curves keep the sides that they had when the crease could still be seen. */
+  private keepSides() {
+    const { curves, evaluated } = this.store;
+    if (!curves) return;
+    const shape = curves.shape;
+    const sharp = evaluated?.shapes.find((s) => s.name === shape)?.revision === curves.revision;
+    for (const curve of curves.picked) {
+      if (curve.normals || this.sides.has(curve) || !sharp) continue;
+      const found = sides(this.shapes, shape, curve);
+      if (found) this.sides.set(curve, found);
+    }
+  }
+
   private drawBall() {
+    this.keepSides();
     const set = this.store.curves;
     const curve = set && set.kind === 'features' ? set.picked.at(-1) : undefined;
     // A ball to begin with, where there is no fillet yet.
     const radius = this.radius.value ?? (curve ? Math.min(this.store.largest?.radius ?? Infinity, this.radius.diagonal() * 0.03) : 0);
-    this.ball.show(curve, set?.origin ?? [0, 0, 0], radius);
+    this.ball.show(curve && { ...curve, normals: curve.normals ?? this.sides.get(curve) }, radius);
   }
 
   private async drawLook() {
