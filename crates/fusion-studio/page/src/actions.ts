@@ -79,11 +79,12 @@ export class Actions {
   }
 
   /** Adds a step on the selected shapes, or on these. */
-  async addStep(verb: string, of = this.store.shapes, options: Options = {}) {
+  async addStep(verb: string, of = this.store.shapes, options: Options = {}, made: (row: Row) => void = () => undefined) {
     const as = this.store.freshName(verb);
-    const made = await this.ask<{ index?: number }>('add_step', { verb, of, as, options });
-    if (!made) return undefined;
-    const row: Row = { table: 'step', index: made.index ?? this.store.document.steps.length - 1 };
+    const added = await this.ask<{ index?: number }>('add_step', { verb, of, as, options });
+    if (!added) return undefined;
+    const row: Row = { table: 'step', index: added.index ?? this.store.document.steps.length - 1 };
+    made(row);
     this.store.select([row]);
     return row;
   }

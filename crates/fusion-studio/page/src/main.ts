@@ -64,13 +64,18 @@ async function start() {
   const context: Context = {
     pickPoints: (take, hint) => points.take(take, hint),
     names: (key) => (key === 'primitive' ? Object.keys(store.document.primitives) : key === 'to' || key === 'part' ? store.document.parts.map((p) => p.name) : []),
+    pickVertices: (take) => points.vertices(take),
+    paintFaces: (take) => points.faces(take),
     drawStroke: (drawn) => points.draw(drawn),
     sectionPlane: () => section.plane,
     unfolded: new Set(),
   };
   toolbar(find('toolbar'), store, actions, words, { ...dialogs, verb: verbs.run });
   tree(find('tree'), store, actions, { ...dialogs, focus: () => view.focus() });
-  properties(find('properties'), store, actions, words, context, () => seamCard(store, radius, view.flyTo));
+  properties(find('properties'), store, actions, words, context, () => seamCard(store, radius, view.flyTo, () => points.take((at) => {
+    void radius.vary(at);
+    return 'stop';
+  }, 'Click a place of the curve.')));
   text(find('document'), store, actions);
   log(find('log'), store, actions, view.flyTo);
   failureCard(find('failure'), store, actions, view.flyTo);

@@ -1,7 +1,7 @@
 // The radius of the picked curves: found in the step that blends them, or begun as a new blend.
 
 import { Pacer, type Actions } from './actions';
-import type { Json, MaxRadius, Options, Step } from './protocol';
+import type { Json, MaxRadius, Options, Step, Vector } from './protocol';
 import type { Row, Store } from './store';
 
 /** Verbs whose steps have a radius of their own. */
@@ -51,6 +51,14 @@ export class Radius {
     await this.send(value, undefined);
   }
 
+  /** Gives a place of the curve a radius of its own, which is that of the whole to begin with. */
+  async vary(at: Vector) {
+    const index = this.store.curves?.step;
+    if (!this.step || index === null || index === undefined || this.value === undefined) return;
+    const listed = (this.step.options.radius_at as Json[] | undefined) ?? [];
+    await this.actions.set({ table: 'step', index }, 'radius_at', [...listed, { at, radius: this.value }]);
+  }
+
   /** A new value of a drag under way. */
   drag(value: number) {
     this.dragging ??= this.actions.newDrag();
@@ -85,12 +93,11 @@ export class Radius {
     // The first value makes the step; those that follow find it in `curves`.
     const options: { [key: string]: Json } = { radius: value };
     if (some) options.near = near;
-    this.begun = this.actions.addStep('blend', [set.shape], options);
-    const row = await this.begun;
-    if (row) {
+    this.begun = this.actions.addStep('blend', [set.shape], options, (row) => {
       this.store.curves = { ...set, step: row.index };
-      this.store.changed('curves');
-    }
+    });
+    await this.begun;
+    this.store.changed('curves');
     if (drag === undefined) this.begun = undefined;
   }
 

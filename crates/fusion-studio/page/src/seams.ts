@@ -33,7 +33,10 @@ export class Seams {
     const inputs = (step?.of ?? []).map((name) => JSON.stringify(store.part(store.rowOf(name)) ?? name));
     const key = blends ? JSON.stringify([row.index, step.do, step.of, inputs, others]) : `${shape} ${known?.revision}`;
     if (key === this.asked) return;
+    const before = this.asked;
     this.asked = key;
+    // A step that was just made of picked curves blends along these.
+    if (blends && store.curves?.step === row.index && !before.startsWith(`[${row.index},`)) return;
     const kind = !blends && known && known.closed === false ? 'loops' : 'features';
     if (kind === 'loops') return this.takeLoops(key, [shape]);
     const answer = await this.ask(blends ? row.index : null, shape);
@@ -82,8 +85,12 @@ export class Seams {
   }
 
   private async ask(step: number | null, shape: string): Promise<Curves | undefined> {
-    if (step !== null) return (await this.answer('curves', shape, { step })) ?? this.answer('curves', shape);
-    return this.answer('curves', shape);
+    if (step === null) return this.answer('curves', shape);
+    const answer = await this.answer('curves', shape, { step });
+    if (answer) return answer;
+    // The seams of a sharp result are still to be seen in it.
+    const sharp = this.store.document.steps[step]?.options.radius === undefined;
+    return sharp ? this.answer('curves', shape) : { origin: [0, 0, 0], curves: [] };
   }
 
   private async answer(what: string, shape: string, keys: object = { shape }): Promise<Curves | undefined> {

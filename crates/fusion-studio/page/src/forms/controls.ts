@@ -8,6 +8,10 @@ import type { Field } from './schema';
 export interface Context {
   /** Lets the person click points on the model; each is given to `take` until that says stop. */
   pickPoints(take: (point: Vector) => 'more' | 'stop', hint: string): void;
+  /** Lets the person click vertices. */
+  pickVertices(take: (vertices: number[]) => void): void;
+  /** Lets the person paint faces. */
+  paintFaces(take: (faces: number[]) => void): void;
   /** Lets the person draw a stroke on the view. */
   drawStroke(drawn: (stroke: Vector[], view: Vector) => void): void;
   /** The section plane as a point and a normal, if it is on. */
@@ -34,6 +38,7 @@ export function control(field: Field, value: Json, change: Change, context: Cont
     case 'list': return list(field, kind.item, value, change, context);
     case 'group': return group(field, kind.fields, value, change, context);
     case 'text': return suggesting([...kind.suggestions, ...context.names(field.key)], value, change);
+    case 'variant': return variant(kind, value, change, context);
     case 'json': return json(value, change);
   }
 }
@@ -96,7 +101,7 @@ function rounded(value: number): number {
 function list(field: Field, item: Field, value: Json, change: Change, context: Context): HTMLElement {
   const values = Array.isArray(value) ? value : [];
   const simple = item.kind.is === 'number' || item.kind.is === 'text';
-  if (simple) return words(item, values, change);
+  if (simple) return picked(field, words(item, values, change), change, context);
   const replaced = (i: number, v: Json) => change(v === null ? without(values, i) : values.map((old, k) => (k === i ? v : old)));
   const rows = values.map((v, i) =>
     h('div', { className: 'item' }, control(item, v, (next) => replaced(i, next), context), button('close', '', 'Remove', () => change(without(values, i)))));
@@ -152,6 +157,29 @@ function words(item: Field, values: Json[], change: Change): HTMLElement {
     },
   });
   return input;
+}
+
+/** Numbers of faces and vertices are painted and clicked as well. */
+function picked(field: Field, typed: HTMLElement, change: Change, context: Context): HTMLElement {
+  const pick = field.key === 'vertices'
+    ? button('target', 'Click vertices', 'Click vertices on the model', () => context.pickVertices(change))
+    : field.key === 'faces' && button('detail', 'Paint', 'Paint faces on the model with a brush', () => context.paintFaces(change));
+  return pick ? h('span', { className: 'with-unit' }, typed, pick) : typed;
+}
+
+/** One of several groups; which one is told by the keys that it needs. */
+function variant(kind: { variants: { name: string; fields: Field[] }[]; file: boolean }, value: Json, change: Change, context: Context): HTMLElement {
+  const values = typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Options) : undefined;
+  const now = kind.variants.find((v) => values && v.fields.every((f) => !f.required || values[f.key] !== undefined));
+  const select = h('select', { onchange: () => {
+    const chosen = kind.variants[Number(select.value)];
+    change(select.value === '' ? null : chosen ? required(chosen.fields) : '');
+  } }, h('option', { value: '' }, 'not given'), ...kind.variants.map((v, i) => h('option', { value: String(i), selected: v === now }, v.name)));
+  if (kind.file) select.append(h('option', { value: '-1', selected: typeof value === 'string' }, 'file'));
+  const set = (key: string, v: Json) => change({ ...values, [key]: v });
+  const lines = (now?.fields ?? []).map((f) =>
+    h('div', { className: 'row', title: f.description, 'data-key': f.key }, h('span', { className: 'name' }, f.key.replaceAll('_', ' ')), control(f, values?.[f.key] ?? f.default, (v) => set(f.key, v), context)));
+  return h('div', { className: 'stack' }, select, ...lines, typeof value === 'string' && text(value, change));
 }
 
 /** A group that may be absent: it is made complete before it is sent. */

@@ -35,7 +35,7 @@ function row(field: Field, value: Json | undefined, change: (value: Json) => voi
   const reset = set && button('reset', '', `Back to the default: ${shown(field.default)}`, () => change(null));
   if (reset) reset.classList.add('reset');
   const body = control(field, value ?? field.default, change, context);
-  const wide = ['list', 'group', 'json'].includes(field.kind.is);
+  const wide = ['list', 'group', 'json', 'variant'].includes(field.kind.is);
   const name = h('span', { className: 'name' }, label(field.key));
   return h('div', { className: `row${set ? ' set' : ''}${wide ? ' wide' : ''}`, title: help, 'data-key': field.key }, name, body, reset);
 }

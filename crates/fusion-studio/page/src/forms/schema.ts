@@ -33,6 +33,7 @@ export type Kind =
   | { is: 'vector'; size: number }
   | { is: 'list'; item: Field }
   | { is: 'group'; fields: Field[] }
+  | { is: 'variant'; variants: { name: string; fields: Field[] }[]; file: boolean }
   | { is: 'text'; suggestions: string[] }
   | { is: 'json' };
 
@@ -149,7 +150,17 @@ export class Vocabulary {
     // A point, or a table that begins with one: the point is what a click gives.
     const point = schema.anyOf?.map((s) => this.resolve(s)).find((s) => s.minItems === 3 && s.maxItems === 3);
     if (point) return { is: 'vector', size: 3 };
-    return { is: 'json' };
+    return this.variants(schema) ?? { is: 'json' };
+  }
+
+  /** Alternatives that are tables, perhaps with a file's name besides. */
+  private variants(schema: Schema): Kind | undefined {
+    const all = (schema.anyOf ?? []).map((s) => this.resolve(s));
+    const tables = all.filter((s) => s.properties);
+    const file = all.some((s) => s.type === 'string');
+    if (tables.length === 0 || tables.length + Number(file) !== all.length) return undefined;
+    const variants = tables.map((s) => ({ name: (s.required ?? Object.keys(s.properties!)).join(', '), fields: this.fields(s, []) }));
+    return { is: 'variant', variants, file };
   }
 
   private choices(schema: Schema) {

@@ -17,9 +17,9 @@ const REACH = 9;
 
 export class CurveLines {
   private group = new Object3D();
-  private all = lines(2.5);
-  private hovered = lines(5);
-  private picked = lines(5);
+  private all = lines(2.5, -2);
+  private hovered = lines(5, -6);
+  private picked = lines(5, -4);
   private set: CurveSet | undefined;
   private over: Curve | undefined;
 
@@ -97,8 +97,8 @@ export function colour(curve: Curve, kind: CurveSet['kind']): Color {
   return curve.seam ? SEAM : curve.convex ? CONVEX : CONCAVE;
 }
 
-function lines(width: number): LineSegments2 & { material: LineMaterial } {
-  const material = new LineMaterial({ linewidth: width, vertexColors: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 });
+function lines(width: number, nearer: number): LineSegments2 & { material: LineMaterial } {
+  const material = new LineMaterial({ linewidth: width, vertexColors: false, polygonOffset: true, polygonOffsetFactor: nearer, polygonOffsetUnits: nearer });
   const object = new LineSegments2(new LineSegmentsGeometry(), material);
   object.frustumCulled = false;
   object.visible = false;

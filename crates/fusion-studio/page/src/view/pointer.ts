@@ -5,6 +5,7 @@ import type { Radius } from '../radius';
 import type { Store } from '../store';
 import type { Ball } from './ball';
 import type { CurveLines } from './curves';
+import type { Handles } from './handles';
 import type { Gizmo } from './gizmo';
 import type { Hit, Shapes } from './shapes';
 import type { Stage } from './stage';
@@ -28,7 +29,7 @@ export class Pointer {
   private hovering = false;
 
   constructor(
-    private stage: Stage, private shapes: Shapes, private lines: CurveLines, private ball: Ball, private gizmo: Gizmo,
+    private stage: Stage, private shapes: Shapes, private lines: CurveLines, private ball: Ball, private handles: Handles, private gizmo: Gizmo,
     private radius: Radius, private store: Store, private clicks: Clicks,
   ) {
     const canvas = stage.renderer.domElement;
@@ -43,6 +44,13 @@ export class Pointer {
     if (event.button !== 0) return;
     const { offsetX: x, offsetY: y } = event;
     this.down = { x, y };
+    const handle = this.store.tool === 'select' ? this.handles.under(x, y) : undefined;
+    if (handle !== undefined) {
+      this.handles.begin(handle);
+      this.stage.orbit.enabled = false;
+      (event.target as HTMLElement).setPointerCapture(event.pointerId);
+      return;
+    }
     if (!this.ball.isUnder(x, y) || this.gizmo.busy || this.store.tool !== 'select') return;
     const ball = this.ball.onScreen();
     const reach = Math.max(8, Math.hypot(x - ball.x, y - ball.y));
@@ -52,6 +60,7 @@ export class Pointer {
   }
 
   private move(event: PointerEvent) {
+    if (this.handles.pulling) return this.handles.pull(event.offsetX, event.offsetY);
     if (this.pulling) {
       // As far from the ball's centre as the pointer is, in shares of where it was taken.
       const { x, y, radius, scale } = this.pulling;
@@ -74,10 +83,17 @@ export class Pointer {
     this.clicks.hover(hit);
     const selecting = this.store.tool === 'select' || this.store.tool === 'move' || this.store.tool === 'rotate';
     this.lines.hover(selecting && !this.gizmo.busy ? this.lines.nearest(pointer, hit?.point) : undefined);
-    if (this.ball.isUnder(event.offsetX, event.offsetY) && selecting) this.stage.renderer.domElement.style.cursor = 'nwse-resize';
+    const pulls = this.ball.isUnder(event.offsetX, event.offsetY) || this.handles.under(event.offsetX, event.offsetY) !== undefined;
+    if (pulls && selecting) this.stage.renderer.domElement.style.cursor = 'nwse-resize';
   }
 
   private release(event: PointerEvent) {
+    if (this.handles.pulling) {
+      this.handles.end();
+      this.stage.orbit.enabled = true;
+      this.down = undefined;
+      return;
+    }
     if (this.pulling) {
       this.pulling = undefined;
       this.stage.orbit.enabled = true;

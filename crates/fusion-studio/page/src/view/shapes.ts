@@ -64,6 +64,7 @@ class Shape {
     const material = this.material;
     this.colour(look, field);
     const coloured = this.coloured !== '' && !manner.ghost;
+    const before = [material.vertexColors, material.transparent];
     material.vertexColors = coloured;
     material.color.copy(coloured ? new Color(0xffffff) : manner.colour);
     material.emissive.set(manner.selected ? 0x1d2c44 : 0x000000);
@@ -71,7 +72,7 @@ class Shape {
     material.transparent = opacity < 1;
     material.opacity = opacity;
     material.depthWrite = !manner.ghost;
-    material.needsUpdate = true;
+    if (before[0] !== material.vertexColors || before[1] !== material.transparent) material.needsUpdate = true;
     this.mesh.material = look.colour === 'zebra' && !manner.ghost ? this.stripes : material;
     this.mesh.renderOrder = manner.ghost ? 1 : 0;
     this.wire.visible = look.wire && !manner.ghost;

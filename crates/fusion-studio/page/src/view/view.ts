@@ -8,12 +8,14 @@ import type { Radius } from '../radius';
 import type { Seams } from '../seams';
 import type { Row, Store } from '../store';
 import { Ball } from './ball';
+import { Brush } from './brush';
 import { CurveLines } from './curves';
 import { Gizmo } from './gizmo';
 import { Marker } from './marker';
 import { Measure } from './measure';
 import { Pointer } from './pointer';
 import { shapeColour, Shapes, type Hit, type Manner } from './shapes';
+import { Handles } from './handles';
 import { Labels } from './labels';
 import { Primitives } from './primitives';
 import { sides } from './sides';
@@ -32,6 +34,8 @@ export class View {
   readonly measure: Measure;
   readonly marker: Marker;
   readonly stroke: Stroke;
+  readonly brush: Brush;
+  readonly handles: Handles;
   private labels: Labels;
   private primitives: Primitives;
   /** Takes the places that are clicked while the tool is `point`. */
@@ -51,12 +55,14 @@ export class View {
     this.measure = new Measure(this.stage, actions, host);
     this.marker = new Marker(this.stage);
     this.primitives = new Primitives(this.stage);
+    this.handles = new Handles(this.stage, store, actions);
+    this.brush = new Brush(this.stage, this.shapes);
     this.stroke = new Stroke(this.stage);
     this.labels = new Labels(this.stage, host);
     this.moves = new Pacer(({ row, pose, drag }) => void this.sendPose(row, pose, drag), 250);
     radius.diagonal = store.drawnSize = () => 2 * this.stage.bounds().radius;
     radius.onDrag = (value) => this.ball.resize(value);
-    new Pointer(this.stage, this.shapes, this.lines, this.ball, this.gizmo, radius, store, {
+    new Pointer(this.stage, this.shapes, this.lines, this.ball, this.handles, this.gizmo, radius, store, {
       shape: (hit, more) => this.clicked(hit, more),
       curve: (curve, more) => seams.pick(curve, more),
       measure: (hit) => void this.measure.click(hit),
