@@ -1,17 +1,20 @@
 //! Results kept: in memory up to a stated size, and in a folder where one is given.
 
 use super::entry::Entry;
-use super::key::Key;
+use super::key::{self, Key};
 use super::store::Store;
+use mesh_io::Model;
 use std::collections::HashMap;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// What steps have made, by all that it depends on, so that a step whose key is known is not taken again. Several threads may
 /// share one, and several processes one folder.
 #[derive(Debug)]
 pub struct Cache {
     memory: Mutex<Memory>,
+    /// Models that are in use somewhere, each with its key, so that it is not hashed for every evaluation.
+    models: Mutex<Vec<(Weak<Model>, Key)>>,
     store: Option<Store>,
 }
 
@@ -46,7 +49,8 @@ impl Default for Cache {
 impl Cache {
     /// At most so many bytes of memory, about; 0 keeps nothing.
     pub fn in_memory(bytes: usize) -> Self {
-        Self { memory: Mutex::new(Memory { most: bytes, ..Memory::default() }), store: None }
+        let memory = Mutex::new(Memory { most: bytes, ..Memory::default() });
+        Self { memory, models: Mutex::default(), store: None }
     }
 
     /// The same, and a folder, which is made where there is none. Of its entries the oldest go once they take more bytes in all.
@@ -74,6 +78,23 @@ impl Cache {
         {
             store.write(&key, &bytes);
         }
+    }
+
+    /// The key of a part.
+    pub(super) fn key_of(&self, model: &Arc<Model>) -> Key {
+        let known = |models: &[(Weak<Model>, Key)]| {
+            // An address is not given to another model while this one is held.
+            let same = models.iter().find(|(held, _)| std::ptr::eq(held.as_ptr(), Arc::as_ptr(model)));
+            same.map(|&(_, key)| key)
+        };
+        if let Some(key) = known(&self.models.lock().unwrap_or_else(PoisonError::into_inner)) {
+            return key;
+        }
+        let key = key::of_part(model);
+        let mut models = self.models.lock().unwrap_or_else(PoisonError::into_inner);
+        models.retain(|(held, _)| held.strong_count() > 0);
+        models.push((Arc::downgrade(model), key));
+        key
     }
 
     fn memory(&self) -> std::sync::MutexGuard<'_, Memory> {
