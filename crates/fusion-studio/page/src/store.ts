@@ -26,6 +26,7 @@ export interface Look {
   edges: boolean;
   colour: 'plain' | 'origin' | 'curvature' | 'quality' | 'zebra';
   grid: boolean;
+  occlusion: boolean;
   section: boolean;
   up: 'y' | 'z';
 }
@@ -66,7 +67,7 @@ export class Store {
   /** What a click in the view means. */
   tool: 'select' | 'move' | 'rotate' | 'measure' | 'point' | 'path' = 'select';
   log: LogLine[] = [];
-  look: Look = { wire: false, edges: true, colour: 'plain', grid: true, section: false, up: 'z' };
+  look: Look = { wire: false, edges: true, colour: 'plain', grid: true, occlusion: false, section: false, up: 'z' };
   /** The size of what is drawn, for first values of lengths. */
   drawnSize: () => number = () => 2;
   private listeners: [Change[], () => void][] = [];

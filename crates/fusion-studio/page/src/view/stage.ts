@@ -5,6 +5,7 @@ import {
   Sphere, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { Occlusion } from './occlusion';
 
 export type Preset = 'front' | 'back' | 'left' | 'right' | 'top' | 'bottom' | 'corner';
 
@@ -19,6 +20,9 @@ export class Stage {
   /** How often the view was drawn; for tests. */
   drawn = 0;
   private grid: GridHelper | undefined;
+  /** Whether hollows are darkened. */
+  occluded = false;
+  private occlusion: Occlusion | undefined;
   private asked = false;
   private before: (() => void)[] = [];
   private flight = 0;
@@ -65,7 +69,10 @@ export class Stage {
   render() {
     this.asked = false;
     for (const action of this.before) action();
-    this.renderer.render(this.scene, this.camera);
+    if (this.occluded) {
+      this.occlusion ??= new Occlusion(this.renderer, this.scene, this.camera);
+      this.occlusion.render(this.host.clientWidth, this.host.clientHeight, this.renderer.getPixelRatio(), this.bounds().radius);
+    } else this.renderer.render(this.scene, this.camera);
     this.drawn++;
   }
 
