@@ -120,6 +120,18 @@ test('a part rides on a primitive', { timeout: 120_000 }, async () => {
     assert.equal(await session.failure(), undefined);
     await page.keyboard.press('Home');
     await session.picture('rider');
+
+    // Pulled along it: sideways round the axis, upwards along it.
+    await page.keyboard.press('g');
+    const middle = await page.evaluate(() => {
+      const { view } = /** @type {any} */ (window).studio;
+      return view.sphereOf(['horn']).center.toArray();
+    });
+    const from = await session.onScreen(middle);
+    await session.pull(from, { x: from.x + 60, y: from.y - 120 });
+    await session.settled();
+    const { at } = (await session.document()).parts[0].pose.on;
+    assert.ok(Math.abs(at[0] - on.at[0] - 0.1) < 0.02 && Math.abs(at[1] - 0.7) < 0.02, `pulled to ${at} from ${on.at}`);
   } finally {
     await session.end();
   }

@@ -7,6 +7,7 @@ import type { Ball } from './ball';
 import type { CurveLines } from './curves';
 import type { Handles } from './handles';
 import type { Gizmo } from './gizmo';
+import type { Rider } from './rider';
 import type { Hit, Shapes } from './shapes';
 import type { Stage } from './stage';
 import type { Curve } from '../protocol';
@@ -29,7 +30,7 @@ export class Pointer {
   private hovering = false;
 
   constructor(
-    private stage: Stage, private shapes: Shapes, private lines: CurveLines, private ball: Ball, private handles: Handles, private gizmo: Gizmo,
+    private stage: Stage, private shapes: Shapes, private lines: CurveLines, private ball: Ball, private handles: Handles, private rider: Rider, private gizmo: Gizmo,
     private radius: Radius, private store: Store, private clicks: Clicks,
   ) {
     const canvas = stage.renderer.domElement;
@@ -51,6 +52,10 @@ export class Pointer {
       (event.target as HTMLElement).setPointerCapture(event.pointerId);
       return;
     }
+    if (this.store.tool === 'move' && !this.gizmo.busy) {
+      const hit = this.shapes.hit(this.position(event));
+      if (this.rider.begin(hit?.shape, x, y)) (event.target as HTMLElement).setPointerCapture(event.pointerId);
+    }
     if (!this.ball.isUnder(x, y) || this.gizmo.busy || this.store.tool !== 'select') return;
     const ball = this.ball.onScreen();
     const reach = Math.max(8, Math.hypot(x - ball.x, y - ball.y));
@@ -61,6 +66,7 @@ export class Pointer {
 
   private move(event: PointerEvent) {
     if (this.handles.pulling) return this.handles.pull(event.offsetX, event.offsetY);
+    if (this.rider.pulling) return this.rider.pull(event.offsetX, event.offsetY);
     if (this.pulling) {
       // As far from the ball's centre as the pointer is, in shares of where it was taken.
       const { x, y, radius, scale } = this.pulling;
@@ -88,6 +94,7 @@ export class Pointer {
   }
 
   private release(event: PointerEvent) {
+    if (this.rider.pulling) this.rider.end();
     if (this.handles.pulling) {
       this.handles.end();
       this.stage.orbit.enabled = true;

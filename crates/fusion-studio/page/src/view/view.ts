@@ -18,6 +18,7 @@ import { shapeColour, Shapes, type Hit, type Manner } from './shapes';
 import { Handles } from './handles';
 import { Labels } from './labels';
 import { Primitives } from './primitives';
+import { Rider } from './rider';
 import { sides } from './sides';
 import { Stage } from './stage';
 import { Stroke } from './stroke';
@@ -62,7 +63,7 @@ export class View {
     this.moves = new Pacer(({ row, pose, drag }) => void this.sendPose(row, pose, drag), 250);
     radius.diagonal = store.drawnSize = () => 2 * this.stage.bounds().radius;
     radius.onDrag = (value) => this.ball.resize(value);
-    new Pointer(this.stage, this.shapes, this.lines, this.ball, this.handles, this.gizmo, radius, store, {
+    new Pointer(this.stage, this.shapes, this.lines, this.ball, this.handles, new Rider(this.stage, store, actions), this.gizmo, radius, store, {
       shape: (hit, more) => this.clicked(hit, more),
       curve: (curve, more) => seams.pick(curve, more),
       measure: (hit) => void this.measure.click(hit),
