@@ -158,7 +158,7 @@ export class Pacer<V> {
   private waiting = false;
   private timer = 0;
 
-  constructor(private send: (value: V) => void, private slow = 400) {}
+  constructor(private send: (value: V) => void, private store: Store) {}
 
   push(value: V) {
     this.newest = value;
@@ -178,7 +178,9 @@ export class Pacer<V> {
     const value = this.newest;
     this.newest = undefined;
     this.waiting = true;
-    this.timer = window.setTimeout(() => this.done(), this.slow);
+    // A value that takes long is not waited for, but has its chance: else nothing would be seen until the drag ends.
+    const slow = Math.min(3000, Math.max(300, 2 * (this.store.evaluated?.milliseconds ?? 0)));
+    this.timer = window.setTimeout(() => this.done(), slow);
     this.send(value);
   }
 }

@@ -53,6 +53,8 @@ export interface EvaluatedShape {
   crossings: number | null;
   faces: number;
   vertices: number;
+  /** Whether no step has taken it up. */
+  result: boolean;
 }
 
 export interface EvaluatedStep {

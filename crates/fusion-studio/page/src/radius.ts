@@ -16,7 +16,7 @@ export class Radius {
   onDrag: (radius: number) => void = () => undefined;
 
   constructor(private store: Store, private actions: Actions) {
-    this.pacer = new Pacer((value) => void this.send(value, this.dragging));
+    this.pacer = new Pacer((value) => void this.send(value, this.dragging), store);
     store.on(['evaluated', 'failure'], () => this.pacer.done());
   }
 

@@ -27,6 +27,7 @@ export interface Look {
   colour: 'plain' | 'origin' | 'curvature' | 'quality' | 'zebra';
   grid: boolean;
   occlusion: boolean;
+  parallel: boolean;
   section: boolean;
   up: 'y' | 'z';
 }
@@ -50,8 +51,6 @@ export class Store {
   document = noDocument;
   evaluated: EvaluatedEvent | undefined;
   meshes = new Map<string, MeshFrame>();
-  /** Shapes that nothing has taken up, and ghosts that were asked for. */
-  ghosts: string[] = [];
   selection: Row[] = [];
   curves: CurveSet | undefined;
   largest: MaxRadius | undefined;
@@ -67,7 +66,7 @@ export class Store {
   /** What a click in the view means. */
   tool: 'select' | 'move' | 'rotate' | 'measure' | 'point' | 'path' = 'select';
   log: LogLine[] = [];
-  look: Look = { wire: false, edges: true, colour: 'plain', grid: true, occlusion: false, section: false, up: 'z' };
+  look: Look = { wire: false, edges: true, colour: 'plain', grid: true, occlusion: false, parallel: false, section: false, up: 'z' };
   /** The size of what is drawn, for first values of lengths. */
   drawnSize: () => number = () => 2;
   private listeners: [Change[], () => void][] = [];
@@ -145,6 +144,11 @@ export class Store {
     if (step >= 0) return { table: 'step', index: step };
     const part = this.document.parts.findIndex((p) => p.name === shape);
     return part >= 0 ? { table: 'part', index: part } : undefined;
+  }
+
+  /** The names of the shapes in view that no step has taken up; all others in view are ghosts. */
+  get results(): string[] {
+    return (this.evaluated?.shapes ?? []).filter((s) => s.result).map((s) => s.name);
   }
 
   /** The names of the selected shapes, in the order of selection. */

@@ -1,26 +1,21 @@
 // The badge of the shape in focus: closed, oriented, crossings; a click flies to the place.
 
 import type { Actions } from '../actions';
-import { button, fill, h } from '../dom';
+import { button, fill, h, number } from '../dom';
 import type { Vector } from '../protocol';
 import type { Store } from '../store';
 
-interface Place {
-  at?: Vector;
-  place?: Vector;
-}
-
-/** What the server knows of a shape; it may say more than this. */
+/** What the server tells of a shape. */
 interface Info {
-  closed?: boolean;
-  oriented?: boolean;
-  crossings?: number | Place[] | { count: number; places?: (Vector | Place)[] };
-  places?: { [what: string]: Vector[] };
-  volume?: number;
-  area?: number;
-  faces?: number;
-  vertices?: number;
-  boundary_loops?: number;
+  closed: boolean;
+  manifold: boolean;
+  boundary_loops: { edges: number; length: number; at: Vector }[] | null;
+  self_intersections: number | null;
+  /** Places of some crossings. */
+  crossings: Vector[];
+  defects: { kind: string; count: number }[];
+  volume: number | null;
+  faces: number;
 }
 
 export function badge(host: HTMLElement, store: Store, actions: Actions, flyTo: (place: Vector) => void) {
@@ -47,15 +42,15 @@ export function badge(host: HTMLElement, store: Store, actions: Actions, flyTo: 
   };
 
   const draw = (shape: string, info: Info) => {
-    const crossings = count(info.crossings);
-    const crossing = firstPlace(info.crossings);
-    const open = info.closed === false;
+    const loops = info.boundary_loops ?? [];
+    const crossings = info.self_intersections;
+    const wrong = info.defects.map((d) => `${d.count} × ${d.kind}`).join(', ');
     fill(host,
       h('strong', {}, shape),
-      mark(open ? 'open' : 'closed', open ? 'It has boundary loops; they are shown in green where curves are shown.' : 'It has no boundary.', !open, first(info, 'boundary')),
-      mark(info.oriented === false ? 'not oriented' : 'oriented', info.oriented === false ? 'Neighbouring faces disagree about the outside.' : 'All faces agree about the outside.', info.oriented !== false, first(info, 'orientation')),
-      crossings !== undefined && mark(crossings === 0 ? 'no crossings' : `${crossings} crossings`, crossings === 0 ? 'No face crosses another.' : 'Faces cross each other; click to see where.', crossings === 0, crossing),
-      h('small', {}, [info.faces && `${info.faces.toLocaleString('en')} faces`, info.volume !== undefined && info.volume !== null && `volume ${Number(info.volume.toPrecision(4))}`].filter(Boolean).join(' · ')));
+      mark(info.closed ? 'closed' : loops.length === 1 ? '1 boundary loop' : `${loops.length} boundary loops`, info.closed ? 'It has no boundary.' : 'It is open.', info.closed, loops[0]?.at),
+      mark(info.manifold ? 'oriented' : 'not manifold', info.manifold ? 'All faces agree about the outside.' : `What is wrong: ${wrong}.`, info.manifold, undefined),
+      crossings !== null && mark(crossings === 0 ? 'no crossings' : `${crossings} crossings`, crossings === 0 ? 'No face crosses another.' : 'Faces cross each other.', crossings === 0, info.crossings[0]),
+      h('small', {}, [`${info.faces.toLocaleString('en')} faces`, info.volume !== null && `volume ${number(info.volume)}`].filter(Boolean).join(' · ')));
   };
 
   function mark(text: string, title: string, good: boolean, place: Vector | undefined): HTMLElement {
@@ -64,21 +59,4 @@ export function badge(host: HTMLElement, store: Store, actions: Actions, flyTo: 
   }
 
   store.on(['evaluated', 'selection', 'document', 'work'], ask);
-}
-
-function count(crossings: Info['crossings']): number | undefined {
-  if (crossings === undefined || crossings === null) return undefined;
-  if (typeof crossings === 'number') return crossings;
-  return Array.isArray(crossings) ? crossings.length : crossings.count;
-}
-
-function firstPlace(crossings: Info['crossings']): Vector | undefined {
-  if (typeof crossings !== 'object' || crossings === null) return undefined;
-  const first = Array.isArray(crossings) ? crossings[0] : crossings.places?.[0];
-  if (Array.isArray(first)) return first as Vector;
-  return first?.at ?? first?.place;
-}
-
-function first(info: Info, what: string): Vector | undefined {
-  return info.places?.[what]?.[0];
 }

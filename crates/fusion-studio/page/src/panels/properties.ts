@@ -13,9 +13,13 @@ import { resultOf, type Row, type Store } from '../store';
 export type Card = () => HTMLElement | false;
 
 export function properties(host: HTMLElement, store: Store, actions: Actions, words: Vocabulary, context: Context, card: Card) {
+  let pending = false;
   const draw = () => {
     // A slider that is being dragged must stay what it is.
     if (host.querySelector('[data-dragging]')) return;
+    // Nor is what is being typed taken away.
+    pending = isTyping(host);
+    if (pending) return;
     const kept = focusPath(host);
     const scroll = host.scrollTop;
     const row = store.focus;
@@ -107,8 +111,21 @@ export function properties(host: HTMLElement, store: Store, actions: Actions, wo
     return h('section', { className: 'empty' }, h('h2', {}, 'Nothing selected'), h('ol', {}, ...steps.map(([, t]) => h('li', {}, String(t)))));
   }
 
+  const remember = ({ target }: Event) => {
+    if (target instanceof HTMLInputElement) target.dataset.before = target.value;
+  };
+  host.addEventListener('focusin', remember);
+  host.addEventListener('change', remember, { capture: true });
+  host.addEventListener('focusout', () => pending && setTimeout(draw));
   store.on(['document', 'selection', 'curves'], draw);
   draw();
+}
+
+/** Whether the cursor is in a text that differs from what it was. */
+function isTyping(host: HTMLElement): boolean {
+  const active = document.activeElement;
+  if (!(active instanceof HTMLInputElement) || !host.contains(active) || ['checkbox', 'range'].includes(active.type)) return false;
+  return active.dataset.before !== undefined && active.value !== active.dataset.before;
 }
 
 /** Where the cursor is in the form, so that a redraw does not lose it. */

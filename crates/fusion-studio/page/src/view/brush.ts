@@ -10,8 +10,8 @@ export class Brush {
   private shape: string | undefined;
   private painting = false;
   private on = false;
-  /** Reach of the brush, as a share of what is in view. */
-  private reach = 0.035;
+  /** Reach of the brush, in pixels. */
+  private reach = 24;
   private paint = new Mesh(
     new BufferGeometry(),
     new MeshBasicMaterial({ color: 0xff4d6d, transparent: true, opacity: 0.75, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1 }),
@@ -37,7 +37,7 @@ export class Brush {
 
   /** Makes the brush larger or smaller. */
   resize(by: number) {
-    this.reach = Math.min(0.3, Math.max(0.004, this.reach * by));
+    this.reach = Math.min(200, Math.max(3, this.reach * by));
   }
 
   /** Ends; answers the shape and its painted faces. */
@@ -81,7 +81,7 @@ export class Brush {
   private around(hit: Hit): number[] {
     const mesh = this.shapes.mesh(hit.shape);
     if (!mesh) return [];
-    const size = this.reach * this.stage.camera.position.distanceTo(hit.point);
+    const size = this.reach * this.stage.pixel(hit.point);
     const sphere = new Sphere(mesh.worldToLocal(hit.point.clone()), size);
     const found = [hit.face];
     const nearest = hit.point.clone();

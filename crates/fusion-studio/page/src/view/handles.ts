@@ -19,7 +19,7 @@ export class Handles {
   private pacer: Pacer<{ row: Row; entries: Entry[]; drag: number }>;
 
   constructor(private stage: Stage, private store: Store, private actions: Actions) {
-    this.pacer = new Pacer(({ row, entries, drag }) => void this.actions.setAll(row, { radius_at: entries as unknown as Json }, drag));
+    this.pacer = new Pacer(({ row, entries, drag }) => void this.actions.setAll(row, { radius_at: entries as unknown as Json }, drag), store);
     stage.overlay.add(this.group);
     store.on(['document', 'selection'], () => this.draw());
     store.on(['evaluated', 'failure'], () => this.pacer.done());

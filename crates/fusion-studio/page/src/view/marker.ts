@@ -15,7 +15,7 @@ export class Marker {
     stage.overlay.add(this.group);
     // Dots keep their size on the screen.
     stage.beforeDrawing(() => {
-      for (const dot of this.dots) dot.scale.setScalar(0.006 * dot.position.distanceTo(stage.camera.position));
+      for (const dot of this.dots) dot.scale.setScalar(5 * stage.pixel(dot.position));
     });
   }
 

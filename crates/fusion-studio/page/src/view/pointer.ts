@@ -124,7 +124,7 @@ export class Pointer {
   }
 
   /** A click goes through ghosts. */
-  private solid = (shape: string) => this.store.document.shapes.includes(shape);
+  private solid = (shape: string) => this.store.results.includes(shape);
 
   /** The place of an event in the view, from -1 to 1. */
   private position(event: PointerEvent): Vector3 {

@@ -14,7 +14,7 @@ export class Rider {
   private pacer: Pacer<Json>;
 
   constructor(private stage: Stage, private store: Store, private actions: Actions) {
-    this.pacer = new Pacer((value) => void this.send(value));
+    this.pacer = new Pacer((value) => void this.send(value), store);
     store.on(['evaluated', 'failure'], () => this.pacer.done());
   }
 

@@ -117,17 +117,22 @@ export class Shapes {
     return !old;
   }
 
-  /** Removes shapes that are not shown any more, and draws the others. */
+  /** Removes all shapes but these. */
+  prune(names: string[]) {
+    for (const [name, shape] of this.shapes) {
+      if (names.includes(name)) continue;
+      this.stage.content.remove(shape.group);
+      shape.dispose();
+      this.shapes.delete(name);
+    }
+  }
+
+  /** Draws these shapes, each in its manner; others wait to be evaluated. */
   draw(manners: Map<string, Manner>, look: Look) {
     for (const [name, shape] of this.shapes) {
       const manner = manners.get(name);
       if (manner) shape.draw(manner, look, this.fields.get(name));
       shape.group.visible = manner !== undefined;
-      if (!manner) {
-        this.stage.content.remove(shape.group);
-        shape.dispose();
-        this.shapes.delete(name);
-      }
     }
     this.stage.draw();
   }

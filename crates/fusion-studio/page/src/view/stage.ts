@@ -175,6 +175,26 @@ export class Stage {
     step();
   }
 
+  /** Shows in parallel projection, to all intents: from so far away that the lines of sight hardly spread. */
+  setParallel(on: boolean) {
+    const fov = on ? 1.5 : 40;
+    if (this.camera.fov === fov) return;
+    const spread = (angle: number) => Math.tan((angle * Math.PI) / 360);
+    const { target } = this.orbit;
+    const away = this.camera.position.clone().sub(target).multiplyScalar(spread(this.camera.fov) / spread(fov));
+    this.camera.fov = fov;
+    this.camera.position.copy(target).add(away);
+    this.clip();
+    this.orbit.update();
+    this.draw();
+  }
+
+  /** The length that a pixel covers at a place. */
+  pixel(at: Vector3): number {
+    const height = 2 * Math.tan((this.camera.fov * Math.PI) / 360) * at.distanceTo(this.camera.position);
+    return height / Math.max(1, this.host.clientHeight);
+  }
+
   /** Near and far planes around what there is. */
   clip() {
     const sphere = this.bounds();

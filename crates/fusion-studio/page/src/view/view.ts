@@ -60,7 +60,7 @@ export class View {
     this.brush = new Brush(this.stage, this.shapes);
     this.stroke = new Stroke(this.stage);
     this.labels = new Labels(this.stage, host);
-    this.moves = new Pacer(({ row, pose, drag }) => void this.sendPose(row, pose, drag), 250);
+    this.moves = new Pacer(({ row, pose, drag }) => void this.sendPose(row, pose, drag), store);
     radius.diagonal = store.drawnSize = () => 2 * this.stage.bounds().radius;
     radius.onDrag = (value) => this.ball.resize(value);
     new Pointer(this.stage, this.shapes, this.lines, this.ball, this.handles, new Rider(this.stage, store, actions), this.gizmo, radius, store, {
@@ -71,6 +71,7 @@ export class View {
       hover: (hit) => this.measure.move(store.tool === 'measure' ? hit?.point : undefined),
     });
     store.on(['evaluated', 'failure'], () => this.moves.done());
+    store.on(['evaluated'], () => this.shapes.prune(store.evaluated?.shapes.map((s) => s.name) ?? []));
     store.on(['document', 'evaluated', 'mesh', 'selection', 'failure', 'work', 'look'], () => this.draw());
     store.on(['selection', 'document'], () => void this.askGhosts());
     store.on(['selection', 'mesh', 'tool', 'document'], () => this.drawGizmo());
@@ -125,12 +126,13 @@ export class View {
     const manners = new Map<string, Manner>();
     const failed = store.failure !== undefined && (store.failure as { event?: string }).event === 'failed';
     const selected = store.selection.map((row) => store.viewOf(row));
-    const shown = new Set([...store.document.shapes, ...store.ghosts]);
+    const shown = new Set(store.evaluated?.shapes.map((s) => s.name));
+    const results = store.results;
     for (const name of this.shapes.names) {
       if (!shown.has(name)) continue;
       const row = store.rowOf(name);
       const part = row?.table === 'part' ? row.index : undefined;
-      const ghost = !store.document.shapes.includes(name);
+      const ghost = !results.includes(name);
       manners.set(name, { selected: selected.includes(name), ghost, dimmed: failed || store.work !== undefined && store.work.fraction !== null && this.late(), colour: shapeColour(part) });
     }
     this.shapes.draw(manners, store.look);
@@ -148,9 +150,7 @@ export class View {
     const key = names.join('\n');
     if (key === this.shownGhosts) return;
     this.shownGhosts = key;
-    store.ghosts = names;
     await this.actions.quietly('show', { names });
-    this.draw();
   }
 
   private drawGizmo() {
@@ -231,7 +231,7 @@ export class View {
     const key = JSON.stringify([look.colour, evaluated?.shapes]);
     if (key === this.fields) return;
     this.fields = key;
-    for (const shape of this.store.document.shapes) await this.actions.quietly(look.colour, { shape });
+    for (const shape of this.store.results) await this.actions.quietly(look.colour, { shape });
   }
 
   private sphereOf(names: string[]): Sphere | undefined {
