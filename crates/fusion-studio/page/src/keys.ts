@@ -17,14 +17,14 @@ export interface KeyActions {
 }
 
 export function keys(store: Store, actions: Actions, act: KeyActions) {
-  const toggle = (key: 'wire' | 'edges' | 'section') => {
+  const toggle = (key: 'wire' | 'edges' | 'section' | 'parallel') => {
     store.look = { ...store.look, [key]: !store.look[key] } as Look;
     store.changed('look');
   };
   const plain: { [key: string]: () => void } = {
     q: () => setTool(store, 'select'), g: () => setTool(store, 'move'), r: () => setTool(store, 'rotate'), m: () => setTool(store, 'measure'),
     e: () => toggle('edges'), w: () => toggle('wire'), c: () => toggle('section'),
-    f: act.focus, home: act.fit, '1': () => act.look('front'), '3': () => act.look('right'), '7': () => act.look('top'), '?': act.help,
+    f: act.focus, home: act.fit, '1': () => act.look('front'), '3': () => act.look('right'), '7': () => act.look('top'), '5': () => toggle('parallel'), '?': act.help,
     delete: () => void actions.removeSelected(), backspace: () => void actions.removeSelected(), escape: act.escape,
   };
   const control: { [key: string]: () => void } = {

@@ -74,7 +74,7 @@ export class Dialogs {
   help = () => {
     const keys: [string, string][] = [
       ['Drag', 'orbit'], ['Right drag, Shift drag', 'pan'], ['Wheel', 'zoom to the pointer'], ['Click, Shift+click', 'select; add to the selection'],
-      ['Q  G  R  M', 'select, move, turn, measure'], ['E  W  C', 'curves, triangles, section plane'], ['F, Home', 'show the selection, show all'], ['1  3  7', 'front, right, top'],
+      ['Q  G  R  M', 'select, move, turn, measure'], ['E  W  C', 'curves, triangles, section plane'], ['F, Home', 'show the selection, show all'], ['1  3  7  5', 'front, right, top; parallel projection'],
       ['Ctrl+Z, Ctrl+Shift+Z', 'undo, redo'], ['Delete', 'remove what is selected'], ['Ctrl+S, Ctrl+O, Ctrl+E', 'save, open, export'], ['Escape', 'stop, deselect'], ['Alt+Up, Alt+Down', 'move a step in the list'],
     ];
     this.show('Keys and mouse', h('table', {}, ...keys.map(([k, what]) => h('tr', {}, h('td', {}, h('kbd', {}, k)), h('td', {}, what)))), 'Close', async () => true);

@@ -25,7 +25,7 @@ export function viewbar(tools: HTMLElement, looks: HTMLElement, store: Store, vi
   const draw = () => {
     fill(tools, ...TOOLS.map(([tool, icon, title]) => pressed(button(icon, '', title, () => setTool(store, tool)), store.tool === tool)));
     const { look } = store;
-    const toggle = (key: 'wire' | 'edges' | 'grid' | 'section' | 'occlusion', title: string) =>
+    const toggle = (key: 'wire' | 'edges' | 'grid' | 'section' | 'occlusion' | 'parallel', title: string) =>
       pressed(button(key, '', title, () => change({ [key]: !look[key] })), look[key]);
     const colour = h('select', { title: 'Colour of faces', 'aria-label': 'Colour of faces', onchange: () => change({ colour: colour.value as Look['colour'] }) },
       ...COLOURS.map(([value, name]) => h('option', { value, selected: look.colour === value }, name)));
@@ -33,7 +33,7 @@ export function viewbar(tools: HTMLElement, looks: HTMLElement, store: Store, vi
       h('option', { value: '' }, 'View'), ...['corner', 'front', 'back', 'left', 'right', 'top', 'bottom'].map((p) => h('option', { value: p }, p)));
     fill(looks, colour,
       toggle('edges', 'Feature curves and seams (E)'), toggle('wire', 'Edges of all triangles (W)'),
-      toggle('occlusion', 'Ambient occlusion: hollows are darker (slow without a graphics card)'), toggle('section', 'Section plane (C)'), toggle('grid', 'Grid'),
+      toggle('occlusion', 'Ambient occlusion: hollows are darker (slow without a graphics card)'), toggle('parallel', 'Parallel projection (5)'), toggle('section', 'Section plane (C)'), toggle('grid', 'Grid'),
       pressed(button('up', look.up.toUpperCase(), 'Which axis points up', () => change({ up: look.up === 'z' ? 'y' : 'z' })), false),
       preset,
       button('fit', '', 'Show everything (Home); F shows the selection', view.fit),

@@ -222,6 +222,7 @@ export class View {
   private async drawLook() {
     const { look, evaluated } = this.store;
     this.stage.occluded = look.occlusion;
+    this.stage.setParallel(look.parallel);
     this.stage.setGrid(look.grid);
     if (look.colour !== 'curvature' && look.colour !== 'quality') {
       this.shapes.fields.clear();
