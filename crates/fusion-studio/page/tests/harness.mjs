@@ -6,6 +6,7 @@ import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
+import { test } from 'node:test';
 import { chromium } from 'playwright-core';
 
 /** @typedef {import('playwright-core').Page} Page */
@@ -21,7 +22,7 @@ const FLAGS = [
   '--disable-component-update', '--disable-sync',
 ];
 /** Longest wait for anything; debug builds on few cores are slow. */
-const PATIENCE = 60_000;
+const PATIENCE = Number(process.env.FUSION_STUDIO_PATIENCE ?? 60_000);
 
 /** A studio with a page; `files` are put below its root first. */
 export class Session {
@@ -208,6 +209,26 @@ export class Session {
       return other / (w * h);
     });
   }
+}
+
+/**
+ * A scenario on a studio of its own; a picture shows where it failed.
+ * @param {string} name
+ * @param {{ files?: { [name: string]: string }, arguments?: string[] }} options
+ * @param {(session: Session, page: Page) => Promise<void>} body
+ */
+export function scenario(name, options, body) {
+  test(name, { timeout: 4 * PATIENCE }, async () => {
+    const session = await Session.start(options);
+    try {
+      await body(session, session.page);
+    } catch (error) {
+      await session.picture(`failed: ${name}`).catch(() => undefined);
+      await session.end().catch((complaints) => console.error(String(complaints)));
+      throw error;
+    }
+    await session.end();
+  });
 }
 
 /** Runs the command line in a folder. @param {string[]} words @param {string} folder */

@@ -1,8 +1,14 @@
 // The rolling ball at the picked curve: shows the radius in place, and is pulled to change it.
 
 import { Mesh, MeshPhongMaterial, SphereGeometry, Vector3 } from 'three';
-import type { Curve } from '../protocol';
+import type { Vector } from '../protocol';
 import type { Stage } from './stage';
+
+/** A place of a curve, and the normals of both sides there. */
+export interface Stand {
+  place: Vector3;
+  normals: [Vector, Vector];
+}
 
 export class Ball {
   private mesh = new Mesh(
@@ -20,16 +26,16 @@ export class Ball {
     stage.overlay.add(this.mesh);
   }
 
-  /** Draws the ball at the middle of a curve, on both of its sides. */
-  show(curve: Curve | undefined, radius: number) {
-    const shown = curve !== undefined && radius > 0 && curve.normals !== undefined && curve.near !== undefined;
+  /** Draws the ball on both sides of a curve. */
+  show(stand: Stand | undefined, convex: boolean, radius: number) {
+    const shown = stand !== undefined && radius > 0;
     this.mesh.visible = shown;
     if (shown) {
-      const [a, b] = curve.normals!.map((n) => new Vector3(...n));
-      this.contact.set(...curve.near!);
+      const [a, b] = stand.normals.map((n) => new Vector3(...n));
+      this.contact.copy(stand.place);
       // The ball touches both sides: outside of a valley, inside of a ridge.
       this.towards.copy(a).add(b).divideScalar(Math.max(0.05, 1 + a.dot(b)));
-      if (curve.convex) this.towards.negate();
+      if (convex) this.towards.negate();
       this.resize(radius);
     }
     this.stage.draw();

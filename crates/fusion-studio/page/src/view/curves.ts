@@ -56,7 +56,7 @@ export class CurveLines {
   }
 
   /** The curve that is nearest to the pointer on the screen, unless the surface hides it. */
-  nearest(pointer: { x: number; y: number }, surface: Vector3 | undefined): Curve | undefined {
+  nearest(pointer: { x: number; y: number }, surface: Vector3 | undefined): { curve: Curve; place: Vector3 } | undefined {
     const { set } = this;
     if (!set || !this.group.visible) return undefined;
     const { camera, host } = this.stage;
@@ -65,7 +65,7 @@ export class CurveLines {
     const slack = 0.02 * this.stage.bounds().radius;
     const hidden = surface ? surface.distanceTo(camera.position) + slack : Infinity;
     const origin = new Vector3(...set.origin);
-    let best: Curve | undefined;
+    let best: { curve: Curve; place: Vector3 } | undefined;
     let least = REACH;
     const [from, to, world] = [new Vector3(), new Vector3(), new Vector3()];
     const project = (point: Vector, out: Vector3) => {
@@ -81,7 +81,10 @@ export class CurveLines {
         const seenNext = project(points[i % points.length], to);
         if (seen && seenNext) {
           const distance = toSegment(pointer, from, to, width, height);
-          if (distance < least) [best, least] = [curve, distance];
+          if (distance.pixels < least) {
+            const [a, b] = [points[i - 1], points[i % points.length]].map((p) => new Vector3(...p).add(origin));
+            [best, least] = [{ curve, place: a.lerp(b, distance.along) }, distance.pixels];
+          }
         }
         from.copy(to);
         seen = seenNext;
@@ -131,12 +134,12 @@ function fill(object: LineSegments2, curves: Curve[], paint?: (curve: Curve) => 
   object.geometry = geometry;
 }
 
-/** Distance in pixels from the pointer to a segment, all in clip coordinates. */
-function toSegment(p: { x: number; y: number }, a: Vector3, b: Vector3, width: number, height: number): number {
+/** Distance in pixels from the pointer to a segment, all in clip coordinates, and where along it. */
+function toSegment(p: { x: number; y: number }, a: Vector3, b: Vector3, width: number, height: number): { pixels: number; along: number } {
   const [ax, ay, bx, by] = [a.x * width, a.y * height, b.x * width, b.y * height];
   const [px, py] = [p.x * width - ax, p.y * height - ay];
   const [dx, dy] = [bx - ax, by - ay];
   const length = dx * dx + dy * dy;
   const t = length > 0 ? Math.min(1, Math.max(0, (px * dx + py * dy) / length)) : 0;
-  return Math.hypot(px - t * dx, py - t * dy);
+  return { pixels: Math.hypot(px - t * dx, py - t * dy), along: t };
 }

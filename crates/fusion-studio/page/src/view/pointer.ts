@@ -15,7 +15,7 @@ import type { Curve } from '../protocol';
 /** What a click means to the rest of the page. */
 export interface Clicks {
   shape(hit: Hit | undefined, more: boolean): void;
-  curve(curve: Curve, more: boolean): void;
+  curve(curve: Curve, more: boolean, place: Vector3): void;
   measure(hit: Hit): void;
   point(hit: Hit): void;
   hover(hit: Hit | undefined): void;
@@ -88,7 +88,7 @@ export class Pointer {
     const hit = this.shapes.hit(pointer, this.solid);
     this.clicks.hover(hit);
     const selecting = this.store.tool === 'select' || this.store.tool === 'move' || this.store.tool === 'rotate';
-    this.lines.hover(selecting && !this.gizmo.busy ? this.lines.nearest(pointer, hit?.point) : undefined);
+    this.lines.hover(selecting && !this.gizmo.busy ? this.lines.nearest(pointer, hit?.point)?.curve : undefined);
     const pulls = this.ball.isUnder(event.offsetX, event.offsetY) || this.handles.under(event.offsetX, event.offsetY) !== undefined;
     if (pulls && selecting) this.stage.renderer.domElement.style.cursor = 'nwse-resize';
   }
@@ -118,8 +118,8 @@ export class Pointer {
     const { tool } = this.store;
     if (tool === 'measure') return hit && this.clicks.measure(hit);
     if (tool === 'point' || tool === 'path') return hit && this.clicks.point(hit);
-    const curve = this.lines.nearest(pointer, hit?.point);
-    if (curve) this.clicks.curve(curve, more);
+    const picked = this.lines.nearest(pointer, hit?.point);
+    if (picked) this.clicks.curve(picked.curve, more, picked.place);
     else this.clicks.shape(hit, more);
   }
 

@@ -1,19 +1,19 @@
 // The normals of the two faces at a curve, read from the mesh that is drawn; the ball touches both.
 
 import { Box3, Sphere, Triangle, Vector3 } from 'three';
-import type { Curve, Vector } from '../protocol';
+import type { Vector } from '../protocol';
 import type { Shapes } from './shapes';
 import { tree } from './surface';
 
 /** Faces that turn by less belong to one side. */
 const SAME = Math.cos((8 * Math.PI) / 180);
 
-/** The normals at the place of a curve, if the shape has a crease there. */
-export function sides(shapes: Shapes, shape: string, curve: Curve): [Vector, Vector] | undefined {
+/** The normals at a place of a curve, if the shape has a crease there. */
+export function sides(shapes: Shapes, shape: string, at: Vector3): [Vector, Vector] | undefined {
   const mesh = shapes.mesh(shape);
   const frame = shapes.frame(shape);
-  if (!mesh || !frame || !curve.near) return undefined;
-  const place = new Vector3(...curve.near).sub(new Vector3(...frame.origin));
+  if (!mesh || !frame) return undefined;
+  const place = at.clone().sub(new Vector3(...frame.origin));
   const reach = new Sphere(place, 1e-4 * (mesh.geometry.boundingSphere?.radius ?? 1));
   const normals: Vector3[] = [];
   tree(mesh.geometry).shapecast({

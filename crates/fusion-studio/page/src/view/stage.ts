@@ -99,8 +99,8 @@ export class Stage {
     const colour = new Color(style.getPropertyValue('--grid').trim() || '#3a414c');
     const sphere = this.bounds();
     // Squares of a round size, about twenty across what there is.
-    const step = 10 ** Math.floor(Math.log10(Math.max(sphere.radius, 1e-9) * 0.4));
-    const squares = Math.max(10, 2 * Math.ceil((2 * sphere.radius) / step));
+    const step = roundLength(Math.max(sphere.radius, 1e-9) * 0.3);
+    const squares = 2 * Math.ceil((2.2 * sphere.radius) / step);
     const grid = new GridHelper(squares * step, squares, colour, colour);
     if (this.up === 'z') grid.rotation.x = Math.PI / 2;
     // Under what there is, so that no line of it runs through a shape.
@@ -218,6 +218,12 @@ export class Stage {
     this.renderer.setSize(width, height);
     this.render();
   }
+}
+
+/** The largest of 1, 2 and 5 times a power of ten that is not above a length. */
+function roundLength(length: number): number {
+  const power = 10 ** Math.floor(Math.log10(length));
+  return power * (length >= 5 * power ? 5 : length >= 2 * power ? 2 : 1);
 }
 
 function round(value: number, step: number): number {

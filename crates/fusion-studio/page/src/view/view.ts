@@ -7,7 +7,7 @@ import type { Curve, Options, Vector } from '../protocol';
 import type { Radius } from '../radius';
 import type { Seams } from '../seams';
 import type { Row, Store } from '../store';
-import { Ball } from './ball';
+import { Ball, type Stand } from './ball';
 import { Brush } from './brush';
 import { CurveLines } from './curves';
 import { Gizmo } from './gizmo';
@@ -43,7 +43,8 @@ export class View {
   onPoint: ((hit: Hit) => void) | undefined;
   private moves: Pacer<{ row: Row; pose: Options; drag: number }>;
   private drag: number | undefined;
-  private sides = new WeakMap<Curve, [Vector, Vector]>();
+  /** Where the ball touches a picked curve, and the sides there. */
+  private stands = new WeakMap<Curve, Stand>();
   private shownGhosts = '';
   private fields = '';
 
@@ -65,7 +66,10 @@ export class View {
     radius.onDrag = (value) => this.ball.resize(value);
     new Pointer(this.stage, this.shapes, this.lines, this.ball, this.handles, new Rider(this.stage, store, actions), this.gizmo, radius, store, {
       shape: (hit, more) => this.clicked(hit, more),
-      curve: (curve, more) => seams.pick(curve, more),
+      curve: (curve, more, place) => {
+        this.stand(curve, place);
+        seams.pick(curve, more);
+      },
       measure: (hit) => void this.measure.click(hit),
       point: (hit) => this.onPoint?.(hit),
       hover: (hit) => this.measure.move(store.tool === 'measure' ? hit?.point : undefined),
@@ -197,26 +201,23 @@ export class View {
     this.drawBall();
   }
 
-  /** Curves keep the sides that they had when the crease could still be seen. */
-  private keepSides() {
+  /** The ball stands where a curve was clicked, with the sides that it had when its crease could be seen. */
+  private stand(curve: Curve, place: Vector3) {
     const { curves, evaluated } = this.store;
-    if (!curves) return;
-    const shape = curves.shape;
-    const sharp = evaluated?.shapes.find((s) => s.name === shape)?.revision === curves.revision;
-    for (const curve of curves.picked) {
-      if (curve.normals || this.sides.has(curve) || !sharp) continue;
-      const found = sides(this.shapes, shape, curve);
-      if (found) this.sides.set(curve, found);
+    const sharp = curves && evaluated?.shapes.find((s) => s.name === curves.shape)?.revision === curves.revision;
+    const normals = sharp ? sides(this.shapes, curves.shape, place) : undefined;
+    if (normals) this.stands.set(curve, { place, normals });
+    else if (!this.stands.has(curve) && curve.normals && curve.near) {
+      this.stands.set(curve, { place: new Vector3(...curve.near), normals: curve.normals });
     }
   }
 
   private drawBall() {
-    this.keepSides();
     const set = this.store.curves;
     const curve = set && set.kind === 'features' ? set.picked.at(-1) : undefined;
     // A ball to begin with, where there is no fillet yet.
     const radius = this.radius.value ?? (curve ? Math.min(this.store.largest?.radius ?? Infinity, this.radius.diagonal() * 0.03) : 0);
-    this.ball.show(curve && { ...curve, normals: curve.normals ?? this.sides.get(curve) }, radius);
+    this.ball.show(curve && this.stands.get(curve), curve?.convex === true, radius);
   }
 
   private async drawLook() {
