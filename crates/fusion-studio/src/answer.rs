@@ -1,5 +1,6 @@
 //! Questions answered, those that take long on threads of their own.
 
+use crate::edges;
 use crate::event;
 use crate::export::export;
 use crate::frame;
@@ -42,11 +43,14 @@ pub fn answer(studio: &Studio, client: &Outbox, id: u64, question: Question, wat
             Ok(json!({}))
         }
         Question::Export { of, file } => export(studio, &of, &file, watch),
-        Question::Curves { of, angle } => questions::curves(scene.shape(&of)?, angle),
+        Question::Curves { step: Some(step), angle, .. } => edges::of_step(studio, &scene, step, angle, watch),
+        Question::Curves { shape, revision, angle, .. } => {
+            Ok(edges::listed(&edges::of_shape(scene.shape(&Of { shape, revision })?, angle)?))
+        }
         Question::Loops(of) => questions::loops(scene.shape(&of)?),
         Question::Info(of) => questions::info(scene.shape(&of)?, watch),
-        Question::MaxRadius { step: Some(step), .. } => {
-            limits::of_step(&scene, step, (&studio.root, &studio.meshes), watch)
+        Question::MaxRadius { step: Some(step), curves, angle, .. } => {
+            limits::of_step(studio, &scene, step, (&curves, angle), watch)
         }
         Question::MaxRadius { shape, curves, angle, .. } => {
             limits::of_curves(scene.shape(&Of { shape, revision: None })?, &curves, angle, watch)

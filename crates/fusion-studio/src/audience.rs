@@ -73,7 +73,9 @@ impl Audience {
         let mut scene = self.lock();
         for client in &scene.clients {
             client.retain(|name| frames.contains_key(name));
-            frames.iter().for_each(|(name, (revision, frame))| client.shape(name, revision, frame));
+            for (name, (revision, frame)) in &frames {
+                client.shape(name, revision, frame);
+            }
             client.event(&evaluated);
         }
         scene.frames = frames;

@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Where an unsaved document is kept, relative to the root.
 pub const AUTOSAVE: &str = ".fusion-studio/autosave.toml";
 
-/// Where that of an earlier session is put, in the same folder.
+/// Where that of an earlier session, or of one that another took the place of, is put.
 pub const EARLIER: &str = ".fusion-studio/earlier.toml";
 
 /// The document and what belongs to it.
@@ -75,23 +75,26 @@ impl Desk {
     pub fn edit(&mut self, root: &Root, edit: Edit) -> Result<Json, Refusal> {
         let text = self.document().to_toml();
         match edit {
-            Edit::New => self.replace(None, Document::new()),
+            Edit::New => {
+                self.put_aside(root);
+                self.replace(None, Document::new());
+            }
             Edit::Open { path } => self.open(root, &path)?,
             Edit::Save { path } => return self.save(root, path),
-            Edit::Text { text } => self.change(text, None)?,
+            Edit::Text { text } => self.change(&text, None)?,
             Edit::AddPart { mesh, name, options } => {
                 let file = below("", Path::new(&mesh))?;
                 root.existing("", Path::new(&file))?;
                 let name = name.unwrap_or_else(|| self.free_name(&file));
                 let mesh = from_folder(self.folder(), &file);
                 let keys = [("name", json!(name)), ("mesh", json!(mesh))];
-                self.change(edit::add(&text, Kind::Part, &keys, &options, None)?, None)?;
+                self.change(&edit::add(&text, Kind::Part, &keys, &options, None)?, None)?;
                 return Ok(
                     json!({ "version": self.version, "index": self.document().parts().len() - 1, "name": name }),
                 );
             }
             Edit::AddPrimitive { name, options } => {
-                self.change(edit::add_primitive(&text, &name, &options)?, None)?;
+                self.change(&edit::add_primitive(&text, &name, &options)?, None)?;
                 return Ok(json!({ "version": self.version, "name": name }));
             }
             Edit::AddStep { verb, of, name, options, at } => {
@@ -101,7 +104,7 @@ impl Desk {
                     Some(several) => json!(several),
                 };
                 let keys = [("do", json!(verb)), ("of", of), ("as", json!(name))];
-                self.change(edit::add(&text, Kind::Step, &keys, &options, at)?, None)?;
+                self.change(&edit::add(&text, Kind::Step, &keys, &options, at)?, None)?;
                 let steps = self.document().steps();
                 let index = at.map_or(steps.len(), |at| at + 1).min(steps.len()) - 1;
                 return Ok(json!({ "version": self.version, "index": index, "name": steps[index].name }));
@@ -110,11 +113,11 @@ impl Desk {
                 let index = self.add_output(root, &of, &file)?;
                 return Ok(json!({ "version": self.version, "index": index }));
             }
-            Edit::Set { set, drag } => self.change(edit::set(&text, &[set])?, drag)?,
-            Edit::SetAll { edits, drag } => self.change(edit::set(&text, &edits)?, drag)?,
+            Edit::Set { set, drag } => self.change(&edit::set(&text, &[set])?, drag)?,
+            Edit::SetAll { edits, drag } => self.change(&edit::set(&text, &edits)?, drag)?,
             Edit::Rename { table, index, to } => self.rename(table, index, &to)?,
-            Edit::Remove(at) => self.change(edit::remove(&text, &at)?, None)?,
-            Edit::Move { at, to } => self.change(edit::move_to(&text, &at, to)?, None)?,
+            Edit::Remove(at) => self.change(&edit::remove(&text, &at)?, None)?,
+            Edit::Move { at, to } => self.change(&edit::move_to(&text, &at, to)?, None)?,
             Edit::Undo => self.version += u64::from(self.history.undo()),
             Edit::Redo => self.version += u64::from(self.history.redo()),
         }
@@ -143,12 +146,12 @@ impl Desk {
                 edit::add(&text, Kind::Output, &keys, &Map::new(), None)?
             }
         };
-        self.change(text, None)?;
+        self.change(&text, None)?;
         Ok(index.unwrap_or(self.document().outputs().len() - 1))
     }
 
-    fn change(&mut self, text: String, drag: Option<u64>) -> Result<(), Refusal> {
-        let document = Document::parse(&text)?;
+    fn change(&mut self, text: &str, drag: Option<u64>) -> Result<(), Refusal> {
+        let document = Document::parse(text)?;
         if text != self.document().to_toml() {
             self.history.push(document, drag);
             self.version += 1;
@@ -164,6 +167,14 @@ impl Desk {
         self.show.clear();
     }
 
+    /// Keeps what another document takes the place of, as far as it is not saved.
+    fn put_aside(&self, root: &Root) {
+        if !self.is_saved() {
+            // What cannot be kept is no reason to refuse what was asked for.
+            let _ = root.write(Path::new(EARLIER), self.autosave().as_bytes());
+        }
+    }
+
     /// Opens a file. What was kept of an unsaved document comes back as one.
     fn open(&mut self, root: &Root, path: &str) -> Result<(), Refusal> {
         let path = below("", Path::new(path))?;
@@ -177,6 +188,9 @@ impl Desk {
             Refusal { sentence: format!("{path}: {}", refusal.sentence), ..refusal }
         };
         let document = Document::parse(&text).map_err(wrong)?;
+        if !is_autosave {
+            self.put_aside(root);
+        }
         self.replace((!is_autosave).then_some(path), document);
         if is_autosave {
             self.saved.clear();
@@ -217,7 +231,7 @@ impl Desk {
             return Err(Refusal::new(format!("there is another shape `{to}`; names must differ")));
         }
         let text = renamed(&document.to_toml(), &old, to)?;
-        self.change(text, None)
+        self.change(&text, None)
     }
 
     fn names(&self) -> BTreeSet<&str> {

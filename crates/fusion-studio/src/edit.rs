@@ -120,7 +120,7 @@ pub fn add(
         tables.iter_mut().chain([&mut new]).for_each(|table| set_position(table, None));
     }
     tables.insert(at, new);
-    tables.into_iter().for_each(|table| all.push(table));
+    all.extend(tables);
     Ok(document.to_string())
 }
 
@@ -176,10 +176,12 @@ pub fn move_to(text: &str, at: &At, to: usize) -> Result<String, EditError> {
     let mut tables: Vec<Table> = std::mem::take(all).into_iter().collect();
     // Equal places keep their order.
     let first = tables.iter().filter_map(Table::position).min();
-    tables.iter_mut().for_each(|table| set_position(table, first));
+    for table in &mut tables {
+        set_position(table, first);
+    }
     let table = tables.remove(at.index);
     tables.insert(to.min(tables.len()), table);
-    tables.into_iter().for_each(|table| all.push(table));
+    all.extend(tables);
     Ok(document.to_string())
 }
 

@@ -58,7 +58,9 @@ pub fn encode(mut header: Value, arrays: &[Array<'_>]) -> Bytes {
     let mut out = Vec::with_capacity(4 + text.len() + size);
     out.extend_from_slice(&(text.len() as u32).to_le_bytes());
     out.extend_from_slice(&text);
-    arrays.iter().for_each(|a| a.numbers.put(&mut out));
+    for array in arrays {
+        array.numbers.put(&mut out);
+    }
     out.into()
 }
 

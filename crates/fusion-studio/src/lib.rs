@@ -19,10 +19,12 @@
 //! | `socket.rs`, `request.rs`, `answer.rs`, `refusal.rs` | one client: what it asks, what it is told |
 //! | `studio.rs`, `audience.rs`, `outbox.rs` | what all clients share, who they are, what waits for each |
 //! | `desk.rs`, `history.rs`, `edit.rs`, `rename.rs`, `rebase.rs`, `value.rs` | the document, its past, changes of its text |
+//! | `play.rs` | requests without a server, for tests |
 //! | `autosave.rs` | the document kept while it is not saved |
 //! | `evaluator.rs`, `sources.rs`, `scene.rs` | one evaluation at a time, its files, what came of it |
 //! | `event.rs`, `frame.rs`, `remedy.rs` | what the server says by itself: JSON, arrays, buttons |
-//! | `questions.rs`, `limits.rs`, `export.rs`, `listing.rs` | questions about shapes, exports, files |
+//! | `questions.rs`, `edges.rs`, `limits.rs` | questions about shapes, their curves, the largest radius |
+//! | `export.rs`, `listing.rs` | files written, files there are |
 
 mod answer;
 mod args;
@@ -30,6 +32,7 @@ mod audience;
 mod autosave;
 mod bundle;
 mod desk;
+mod edges;
 mod edit;
 mod evaluator;
 mod event;
@@ -41,6 +44,7 @@ mod http;
 mod limits;
 mod listing;
 mod outbox;
+mod play;
 mod questions;
 mod rebase;
 mod refusal;
@@ -57,6 +61,7 @@ mod upload;
 mod value;
 
 pub use args::main;
+pub use play::play;
 pub use refusal::Refusal;
 pub use root::PathError;
 pub use server::{Options, Server, StartError};

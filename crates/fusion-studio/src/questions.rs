@@ -6,11 +6,9 @@ use crate::request::{Measure, Of};
 use crate::scene::Scene;
 use fusion::Info;
 use fusion::document::Shown;
-use fusion::features::{Convexity, FeatureCurve, Params, feature_curves};
-use fusion::list_curves;
 use fusion::mesh_core::{
-    Adjacency, Connected, FaceId, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, VertexId, Watch,
-    boundary_loops, mean_curvature_vectors, triangle_normal, vertex_normals,
+    Connected, FaceId, Faces, Positions, TriMesh, VertexId, Watch, boundary_loops, mean_curvature_vectors,
+    triangle_normal, vertex_normals,
 };
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -29,51 +27,6 @@ pub fn connected(shown: &Shown) -> Result<Connected<TriMesh>, Refusal> {
     })
 }
 
-/// The feature curves at an angle.
-///
-/// # Errors
-/// [`Refusal`].
-pub fn curves(shown: &Shown, angle: Option<f64>) -> Result<Value, Refusal> {
-    let mesh = connected(shown)?;
-    let curves = feature_curves(&mesh, &features(angle)?);
-    let origin = drawing_origin(shown);
-    let list = list_curves(&mesh, &curves, &[]).into_iter().zip(&curves).map(|(listed, curve)| {
-        let points: Vec<_> = listed.points.iter().map(|&p| drawn(p.into(), origin)).collect();
-        json!({
-            "id": listed.id, "length": listed.length, "closed": listed.closed,
-            "convex": curve.convexity == Convexity::Convex, "angle": listed.angles[1], "angles": listed.angles,
-            "seam": is_seam(&mesh, curve, &shown.origins), "near": listed.near, "points": points,
-        })
-    });
-    Ok(json!({ "revision": revision(shown), "curves": list.collect::<Vec<_>>() }))
-}
-
-/// What a feature curve is.
-///
-/// # Errors
-/// [`Refusal`] for an angle that no edge has.
-pub fn features(angle: Option<f64>) -> Result<Params, Refusal> {
-    let default = Params::default();
-    let angle = angle.unwrap_or(default.angle);
-    if angle > 0.0 && angle < 180.0 {
-        Ok(Params { angle, ..default })
-    } else {
-        Err(Refusal::new("an angle between 0 and 180 degrees is needed"))
-    }
-}
-
-/// Whether most of its edges lie between faces of two parts.
-fn is_seam(mesh: &Connected<TriMesh>, curve: &FeatureCurve, origins: &Origins) -> bool {
-    let part = |h: HalfedgeId| match origins.faces[h.face()] {
-        FaceOrigin::Input { part, .. } | FaceOrigin::Piece { part, .. } => Some(part),
-        FaceOrigin::New { .. } => None,
-    };
-    let between = |h: &&HalfedgeId| {
-        mesh.twin(**h).is_some_and(|twin| part(**h).zip(part(twin)).is_some_and(|(one, other)| one != other))
-    };
-    2 * curve.halfedges.iter().filter(between).count() > curve.halfedges.len()
-}
-
 /// The boundary loops by their numbers.
 ///
 /// # Errors
@@ -86,10 +39,11 @@ pub fn loops(shown: &Shown) -> Result<Value, Refusal> {
         let points: Vec<_> = places.iter().map(|&p| drawn(p, origin)).collect();
         json!({
             "id": id, "edges": walk.len(), "length": walk.iter().map(|&h| mesh.edge_length(h)).sum::<f64>(),
-            "at": places.first().map(|p| p.to_array()), "closed": true, "points": points,
+            "at": places.first().map(DVec3::to_array), "closed": true, "points": points,
         })
     });
-    Ok(json!({ "revision": revision(shown), "loops": list.collect::<Vec<_>>() }))
+    let origin = origin.to_array();
+    Ok(json!({ "revision": revision(shown), "origin": origin, "loops": list.collect::<Vec<_>>() }))
 }
 
 /// Counts, measures, defects, and the places of crossings.
@@ -116,7 +70,7 @@ pub fn info(shown: &Shown, watch: &Watch) -> Result<Value, Refusal> {
 pub fn pick(shown: &Shown, face: u32, bary: [f64; 3]) -> Result<DVec3, Refusal> {
     let [a, b, c] = triangle(shown, face)?;
     let sum: f64 = bary.iter().sum();
-    if !bary.iter().all(|x| x.is_finite()) || !(sum.abs() > 0.0) {
+    if !bary.iter().all(|x| x.is_finite()) || sum == 0.0 {
         return Err(Refusal::new("barycentrics are three finite numbers"));
     }
     Ok((bary[0] * a + bary[1] * b + bary[2] * c) / sum)

@@ -150,11 +150,15 @@ pub enum Question {
         /// Relative to the root.
         file: String,
     },
-    /// Feature curves.
+    /// Feature curves of a shape, or those that a step could blend.
     Curves {
-        /// Of which shape.
-        #[serde(flatten)]
-        of: Of,
+        /// Which step; else of a shape.
+        step: Option<usize>,
+        /// Which shape.
+        #[serde(default)]
+        shape: String,
+        /// What the client sees of it.
+        revision: Option<String>,
         /// Least dihedral angle, in degrees.
         angle: Option<f64>,
     },

@@ -178,7 +178,15 @@ fn questions_about_shapes_are_answered_from_the_exact_mesh() {
     let circle = std::f64::consts::TAU * (1.0 - d2 / 4.0).sqrt();
     let length = curve["length"].as_f64().unwrap();
     assert!((length / circle - 1.0).abs() < 0.02, "{length} {circle}");
-    let largest = page.ok(json!({ "do": "max_radius", "step": 0 }));
+    // A blended union still tells the seam that it was blended along.
+    let seams = page.ok(json!({ "do": "curves", "step": 0 }));
+    let set = json!({ "do": "set", "table": "step", "index": 0, "key": "radius", "value": 0.1 });
+    let version = page.ok(set)["version"].clone();
+    page.evaluated(&version);
+    assert_eq!(page.ok(json!({ "do": "curves", "step": 0 })), seams);
+    assert_eq!((&seams["curves"][0]["length"], &seams["curves"][0]["convex"]), (&curve["length"], &json!(false)));
+    page.ok(json!({ "do": "undo" }));
+    let largest = page.ok(json!({ "do": "max_radius", "step": 0, "curves": [0] }));
     let again = page.ok(json!({ "do": "max_radius", "shape": "both", "curves": [curve["id"]], "angle": 20 }));
     let [a, b] = [&largest, &again].map(|r| r["radius"].as_f64().unwrap());
     assert!(a > 0.1 && (a / b - 1.0).abs() < 0.02, "{largest} {again}");

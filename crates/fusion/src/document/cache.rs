@@ -3,10 +3,11 @@
 use super::entry::Entry;
 use super::key::{self, Key};
 use super::store::Store;
+use crate::join::First;
 use mesh_io::Model;
 use std::collections::HashMap;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 /// What steps have made, by all that it depends on, so that a step whose key is known is not taken again. Several threads may
 /// share one, and several processes one folder.
@@ -15,6 +16,8 @@ pub struct Cache {
     memory: Mutex<Memory>,
     /// Models that are in use somewhere, each with its key, so that it is not hashed for every evaluation.
     models: Mutex<Vec<(Weak<Model>, Key)>>,
+    /// What booleans made before their seams were blended, the newest last.
+    firsts: Mutex<Vec<(Key, Arc<OnceLock<First>>)>>,
     store: Option<Store>,
 }
 
@@ -36,11 +39,14 @@ struct Kept {
     at: u64,
 }
 
+/// Booleans that are kept on their way.
+const FIRSTS: usize = 4;
+
 /// Memory taken where nothing else is said.
 const MOST: usize = 1 << 30;
 
 impl Default for Cache {
-    /// A gigabyte of memory, and no folder.
+    /// A gigabyte of memory for results, and no folder.
     fn default() -> Self {
         Self::in_memory(MOST)
     }
@@ -50,7 +56,7 @@ impl Cache {
     /// At most so many bytes of memory, about; 0 keeps nothing.
     pub fn in_memory(bytes: usize) -> Self {
         let memory = Mutex::new(Memory { most: bytes, ..Memory::default() });
-        Self { memory, models: Mutex::default(), store: None }
+        Self { memory, models: Mutex::default(), firsts: Mutex::default(), store: None }
     }
 
     /// The same, and a folder, which is made where there is none. Of its entries the oldest go once they take more bytes in all.
@@ -95,6 +101,21 @@ impl Cache {
         models.retain(|(held, _)| held.strong_count() > 0);
         models.push((Arc::downgrade(model), key));
         key
+    }
+
+    /// The place of what a boolean makes before its seams are blended, by all that this depends on. The last few are kept, whatever
+    /// memory they take, as long as anything is.
+    pub(super) fn first(&self, key: &Key) -> Arc<OnceLock<First>> {
+        let mut firsts = self.firsts.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = firsts.iter().position(|(of, _)| of == key).map(|i| firsts.remove(i));
+        let first = known.unwrap_or_else(|| (*key, Arc::default()));
+        let place = Arc::clone(&first.1);
+        if self.memory().most > 0 {
+            firsts.push(first);
+            let excess = firsts.len().saturating_sub(FIRSTS);
+            firsts.drain(..excess);
+        }
+        place
     }
 
     fn memory(&self) -> std::sync::MutexGuard<'_, Memory> {

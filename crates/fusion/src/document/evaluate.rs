@@ -256,7 +256,7 @@ impl<'a> Run<'a> {
         let entry = if let Some(entry) = known {
             entry
         } else {
-            let Outcome { model, origins, report } = task.run(self.precision, self.watch)?;
+            let Outcome { model, origins, report } = task.run(self.precision, self.cache, self.watch)?;
             let entry = Arc::new(Entry { model: Arc::new(model), origins, report });
             self.cache.put(key, &entry);
             entry
