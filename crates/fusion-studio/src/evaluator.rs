@@ -86,13 +86,13 @@ impl Evaluator {
         self.wake.notify_all();
     }
 
-    /// Stops the evaluation under way.
-    pub fn cancel(&self) {
+    /// Stops the evaluation under way, and gives back the job that waited.
+    pub fn cancel(&self) -> Option<Job> {
         let mut queue = self.lock();
-        queue.next = None;
         if let Some(running) = &queue.running {
             running.watch.cancel();
         }
+        queue.next.take()
     }
 
     /// Ends [`Self::work`].

@@ -120,7 +120,9 @@ impl Studio {
 
     /// Stops the evaluation under way.
     pub fn cancel(&self) {
-        self.evaluator.cancel();
+        if let Some(job) = self.evaluator.cancel() {
+            self.audience.tell(&event::cancelled(job.version));
+        }
     }
 
     fn changed(&self, desk: &Desk) {

@@ -253,6 +253,24 @@ fn a_client_that_goes_amid_an_evaluation_stops_nobody() {
     assert!((done["steps"][0]["report"]["figures"]["radius"].as_f64().unwrap() - 0.17).abs() < 1e-12);
 }
 
+/// Whatever the moment: the page hears that it was stopped, or that it was done before.
+#[test]
+fn a_cancelled_evaluation_says_so_and_the_next_one_is_done() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_server, mut page) = union_of_balls(folder.path());
+    for n in 0..6 {
+        let radius = 0.1 + 0.01 * f64::from(n);
+        page.events.clear();
+        let set = json!({ "do": "set", "table": "step", "index": 0, "key": "radius", "value": radius });
+        let version = page.ok(set)["version"].clone();
+        std::thread::sleep(std::time::Duration::from_millis(7 * n as u64));
+        page.ok(json!({ "do": "cancel" }));
+        page.wait(|e| (e["event"] == "cancelled" || e["event"] == "evaluated") && e["version"] == version);
+    }
+    let version = page.ok(json!({ "do": "undo" }))["version"].clone();
+    page.evaluated(&version);
+}
+
 #[test]
 fn two_clients_edit_one_document_without_losing_an_edit() {
     let folder = tempfile::tempdir().unwrap();
