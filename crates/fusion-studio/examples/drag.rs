@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release -p fusion-studio --example drag`
 
-#[path = "../tests/client/mod.rs"]
+#[path = "../tests/studio/client.rs"]
 #[allow(dead_code)]
 mod client;
 

@@ -36,7 +36,7 @@ pub fn raw(host: &str, request: &[u8]) -> (u16, Vec<u8>) {
 /// A request with these headers besides the usual ones.
 pub fn get(address: &str, path: &str, headers: &[(&str, &str)]) -> (u16, Vec<u8>) {
     let (host, token) = parts(address);
-    let more: String = headers.iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
+    let more = headers.iter().fold(String::new(), |all, (name, value)| format!("{all}{name}: {value}\r\n"));
     let own = if headers.iter().any(|h| h.0.eq_ignore_ascii_case("host")) {
         String::new()
     } else {
@@ -175,14 +175,16 @@ impl Client {
     }
 
     /// Asks for what is granted.
-    pub fn ok(&mut self, request: Value) -> Value {
+    pub fn ok(&mut self, request: impl Into<Value>) -> Value {
+        let request = request.into();
         let answer = self.ask(request.clone());
         assert!(answer.get("ok").is_some(), "{request}: {answer}");
         answer["ok"].clone()
     }
 
     /// Asks for what is refused, and gives the sentence.
-    pub fn refused(&mut self, request: Value) -> String {
+    pub fn refused(&mut self, request: impl Into<Value>) -> String {
+        let request = request.into();
         let answer = self.ask(request.clone());
         answer["error"]["sentence"].as_str().unwrap_or_else(|| panic!("{request}: {answer}")).into()
     }

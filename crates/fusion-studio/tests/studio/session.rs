@@ -1,9 +1,7 @@
 //! A session from two files to one: what a modeller does with the page, by the page's own protocol.
 
-mod client;
-
-use client::{Client, get, post, union_of_balls};
-use fusion::mesh_core::{Connected, volume};
+use crate::client::{Client, get, post, union_of_balls};
+use fusion::mesh_core::{Connected, Watch, volume};
 use fusion_studio::{Options, Server};
 use serde_json::{Value, json};
 use std::fs;
@@ -15,7 +13,7 @@ fn replayed(document: &Path, into: &Path) -> Vec<u8> {
     let text = fs::read_to_string(document).unwrap();
     let made = Document::parse(&text)
         .unwrap()
-        .evaluate(document.parent().unwrap(), &Cache::default(), Precisions::ByFile, &Default::default())
+        .evaluate(document.parent().unwrap(), &Cache::default(), Precisions::ByFile, &Watch::default())
         .unwrap();
     let [output] = &made.outputs[..] else { panic!("one output") };
     let file = into.join(output.file.file_name().unwrap());
@@ -27,7 +25,7 @@ fn replayed(document: &Path, into: &Path) -> Vec<u8> {
 fn drop_union_drag_undo_export_and_replay() {
     let folder = tempfile::tempdir().unwrap();
     let files = tempfile::tempdir().unwrap();
-    client::two_balls(files.path(), 3);
+    crate::client::two_balls(files.path(), 3);
     let mut options = Options::default();
     options.root = Some(folder.path().into());
     let server = Server::start(&options).unwrap();
@@ -106,7 +104,7 @@ fn frames_are_the_exact_mesh_near_the_origin() {
 }
 
 /// A volume, from a frame alone.
-fn drawn_volume(frame: &client::Frame) -> f64 {
+fn drawn_volume(frame: &crate::client::Frame) -> f64 {
     let p = frame.f32("positions");
     let at = |v: u32| glam::DVec3::from_array([0, 1, 2].map(|k| f64::from(p[3 * v as usize + k])));
     frame.u32("faces").chunks_exact(3).map(|f| at(f[0]).dot(at(f[1]).cross(at(f[2]))) / 6.0).sum()

@@ -1,8 +1,6 @@
 //! Who must not get in, and what must not break it.
 
-mod client;
-
-use client::{Client, get, parts, post, raw, union_of_balls};
+use crate::client::{Client, get, parts, post, raw, union_of_balls};
 use fusion_studio::{Options, Server};
 use serde_json::json;
 use std::fs;
@@ -334,7 +332,7 @@ fn whoever_is_killed_while_saving_leaves_a_whole_document() {
 fn an_unsaved_document_comes_back() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("sub")).unwrap();
-    client::two_balls(&folder.path().join("sub"), 1);
+    crate::client::two_balls(&folder.path().join("sub"), 1);
     {
         let server = studio(folder.path());
         let mut page = Client::connect(server.address());
