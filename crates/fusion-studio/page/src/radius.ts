@@ -93,7 +93,9 @@ export class Radius {
     // The first value makes the step; those that follow find it in `curves`.
     const options: { [key: string]: Json } = { radius: value };
     if (some) options.near = near;
+    const { largest } = this.store;
     this.begun = this.actions.addStep('blend', [set.shape], options, (row) => {
+      this.store.largest = largest;
       this.store.curves = { ...set, step: row.index };
     });
     await this.begun;

@@ -218,7 +218,7 @@ export class Session {
  * @param {(session: Session, page: Page) => Promise<void>} body
  */
 export function scenario(name, options, body) {
-  test(name, { timeout: 4 * PATIENCE }, async () => {
+  test(name, { timeout: 5 * PATIENCE }, async () => {
     const session = await Session.start(options);
     try {
       await body(session, session.page);

@@ -95,7 +95,7 @@ function vector(size: number, value: Json, change: Change, context: Context): HT
 }
 
 function rounded(value: number): number {
-  return Number(value.toPrecision(7));
+  return Number(value.toPrecision(4));
 }
 
 function list(field: Field, item: Field, value: Json, change: Change, context: Context): HTMLElement {

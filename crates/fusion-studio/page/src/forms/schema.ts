@@ -129,6 +129,9 @@ export class Vocabulary {
     const { title = '' } = schema;
     if (title.startsWith('length')) return { is: 'length' };
     const types = [schema.type ?? []].flat().filter((t) => t !== 'null');
+    // A point, or a table that begins with one: the point is what a click gives.
+    const point = schema.anyOf?.map((s) => this.resolve(s)).find((s) => s.minItems === 3 && s.maxItems === 3);
+    if (point) return { is: 'vector', size: 3 };
     const choices = this.choices(schema);
     if (choices) return { is: 'choice', choices };
     const [type] = types;
@@ -147,9 +150,6 @@ export class Vocabulary {
       return { is: 'list', item };
     }
     if (schema.properties) return { is: 'group', fields: this.fields(schema, []) };
-    // A point, or a table that begins with one: the point is what a click gives.
-    const point = schema.anyOf?.map((s) => this.resolve(s)).find((s) => s.minItems === 3 && s.maxItems === 3);
-    if (point) return { is: 'vector', size: 3 };
     return this.variants(schema) ?? { is: 'json' };
   }
 

@@ -13,7 +13,7 @@ export interface Stand {
 export class Ball {
   private mesh = new Mesh(
     new SphereGeometry(1, 40, 24),
-    new MeshPhongMaterial({ color: 0xff7a18, transparent: true, opacity: 0.5, depthWrite: false, shininess: 60 }),
+    new MeshPhongMaterial({ color: 0xff7a18, transparent: true, opacity: 0.42, depthWrite: false, depthTest: false, shininess: 60 }),
   );
   private contact = new Vector3();
   /** Where the centre goes, for each unit of the radius. */
@@ -22,7 +22,7 @@ export class Ball {
 
   constructor(private stage: Stage) {
     this.mesh.visible = false;
-    this.mesh.renderOrder = 2;
+    this.mesh.renderOrder = 5;
     stage.overlay.add(this.mesh);
   }
 

@@ -79,11 +79,11 @@ export class Handles {
     this.entries = Array.isArray(listed) ? (listed as unknown as Entry[]) : [];
     this.group.clear();
     this.balls = this.entries.map(({ at, radius }) => {
-      const material = new MeshPhongMaterial({ color: 0x2fb5a8, transparent: true, opacity: 0.55, depthWrite: false });
+      const material = new MeshPhongMaterial({ color: 0x2fb5a8, transparent: true, opacity: 0.45, depthWrite: false, depthTest: false });
       const ball = new Mesh(new SphereGeometry(1, 32, 20), material);
       ball.position.set(...at);
       ball.scale.setScalar(this.length(radius));
-      ball.renderOrder = 2;
+      ball.renderOrder = 6;
       this.group.add(ball);
       return ball;
     });

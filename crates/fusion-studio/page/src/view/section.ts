@@ -19,8 +19,6 @@ export class Section {
 
   constructor(private stage: Stage, private bar: HTMLElement, private store: Store, private cut: () => void, private path: () => void) {
     this.sheet.visible = false;
-    // The plane must not cut itself away.
-    (this.sheet.material as MeshBasicMaterial).clippingPlanes = [];
     stage.overlay.add(this.sheet);
     store.on(['look'], () => this.draw());
     store.on(['selection'], () => this.drawBar());
@@ -82,7 +80,8 @@ export class Section {
     if (!plane) return this.stage.section([]);
     const point = new Vector3(...plane.point);
     const normal = new Vector3(...plane.normal);
-    this.sheet.position.copy(point);
+    // A little behind the plane, which would cut it away.
+    this.sheet.position.copy(point).addScaledVector(normal, -2e-3 * this.stage.bounds().radius);
     this.sheet.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), normal.clone().normalize());
     this.sheet.scale.setScalar(this.stage.bounds().radius * 1.05);
     this.stage.section([new Plane().setFromNormalAndCoplanarPoint(normal.clone().negate(), point)]);

@@ -146,7 +146,7 @@ export class Stage {
   frame(sphere: Sphere, direction = this.camera.position.clone().sub(this.orbit.target).normalize()) {
     const half = (this.camera.fov * Math.PI) / 360;
     const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
-    const distance = (1.08 * Math.max(sphere.radius, 1e-9)) / Math.sin(narrow);
+    const distance = (1.22 * Math.max(sphere.radius, 1e-9)) / Math.sin(narrow);
     const to = sphere.center.clone().addScaledVector(direction, distance);
     this.fly(to, sphere.center);
   }
