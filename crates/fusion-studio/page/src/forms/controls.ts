@@ -211,9 +211,14 @@ function required(fields: Field[]): Options {
   return Object.fromEntries(fields.filter((f) => f.required).map((f) => [f.key, blank(f)]));
 }
 
+/** A group in one line. */
 function summary(values: Options): string {
-  const parts = Object.entries(values).filter(([, v]) => v !== null);
-  return parts.map(([key, v]) => `${key} ${Array.isArray(v) ? v.map((n) => (typeof n === 'number' ? Number(n.toPrecision(3)) : JSON.stringify(n))).join(' ') : typeof v === 'object' ? '…' : v}`).join(', ');
+  const short = (v: Json): string => {
+    if (typeof v === 'number') return String(Number(v.toPrecision(3)));
+    if (!Array.isArray(v)) return typeof v === 'object' ? '…' : String(v);
+    return v.some(Array.isArray) ? `of ${v.length} points` : v.length > 4 ? `${v.length} entries` : v.map(short).join(' ');
+  };
+  return Object.entries(values).filter(([, v]) => v !== null).map(([key, v]) => `${key} ${short(v)}`).join(', ');
 }
 
 function text(value: Json, change: Change): HTMLInputElement {

@@ -78,7 +78,7 @@ export class Stroke {
   private release() {
     const { taker } = this;
     if (!taker || this.points.length === 0) return;
-    const tidy = (v: Vector3) => v.toArray().map((x) => Number(x.toPrecision(6))) as Vector;
+    const tidy = (v: Vector3) => v.toArray().map((x) => (Math.abs(x) < 1e-9 ? 0 : Number(x.toPrecision(6)))) as Vector;
     const stroke = this.points.map(tidy);
     const view = tidy(this.stage.camera.getWorldDirection(new Vector3()));
     this.stop();
