@@ -2,8 +2,11 @@
 
 import type { Actions } from './actions';
 import type { Points } from './points';
-import type { Vector } from './protocol';
+import type { Options, Vector } from './protocol';
 import type { Store } from './store';
+
+/** Options to begin with, of verbs that do nothing without. */
+const FIRST: { [verb: string]: Options } = { remesh: { edge_length: '1%' }, blend: { radius: '1%' } };
 
 export class Verbs {
   constructor(private store: Store, private actions: Actions, private points: Points) {}
@@ -12,7 +15,7 @@ export class Verbs {
     if (verb === 'cut') return this.beginCut();
     if (verb === 'compose') return void this.actions.addStep(verb, this.openings());
     if (verb === 'blend') return void this.blend();
-    void this.actions.addStep(verb);
+    void this.actions.addStep(verb, undefined, FIRST[verb]);
   };
 
   /** A cut needs a plane or a path: the section bar offers both. */
@@ -49,6 +52,6 @@ export class Verbs {
   private async blend() {
     const { curves } = this.store;
     const near = (curves?.kind === 'features' ? curves.picked : []).map((c) => c.near).filter((p) => p !== undefined);
-    await this.actions.addStep('blend', this.store.shapes, { radius: '1%', ...(near.length > 0 ? { near } : {}) });
+    await this.actions.addStep('blend', this.store.shapes, { ...FIRST.blend, ...(near.length > 0 ? { near } : {}) });
   }
 }
