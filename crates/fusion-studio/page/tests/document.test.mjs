@@ -107,7 +107,10 @@ scenario('a part rides on a primitive', {}, async (session, page) => {
   const { on } = (await session.document()).parts[0].pose;
   assert.deepEqual([on.primitive, on.at[1]], ['cylinder', 0.5]);
   assert.equal(await session.failure(), undefined);
+  // Out of the form, so that keys are the view's.
+  await page.keyboard.press('Escape');
   await page.keyboard.press('Home');
+  await page.waitForTimeout(400);
   await session.picture('rider');
 
   // Pulled along it: sideways round the axis, upwards along it.
