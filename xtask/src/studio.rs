@@ -89,7 +89,11 @@ fn install(npm: &str) -> Result<(), Fault> {
 
 fn run(npm: &str, arguments: &[&str]) -> Result<(), Fault> {
     println!("studio: npm {}", arguments.join(" "));
-    let status = Command::new(npm).args(arguments).env("FUSION_STUDIO_BUNDLE", target().join("studio")).current_dir(page()).status()?;
+    let status = Command::new(npm)
+        .args(arguments)
+        .env("FUSION_STUDIO_BUNDLE", target().join("studio"))
+        .current_dir(page())
+        .status()?;
     if status.success() { Ok(()) } else { Err(format!("npm {} failed", arguments.join(" ")).into()) }
 }
 
