@@ -34,6 +34,7 @@ scenario('edges picked by mouse, the ball pulled, and the remedy of an error app
   await session.picture('ball');
 
   // A ball that does not fit: the sentence, the place, the remedy.
+  await page.click('#properties details.more > summary');
   await page.selectOption('[data-key=overlap] select', { label: 'error' });
   await session.settled();
   await page.fill('[data-key=radius] input', '0.9');
