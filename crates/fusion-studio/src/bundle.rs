@@ -11,7 +11,7 @@ struct Bundle;
 
 /// The page's scripts come from here and nowhere else; it talks to this server alone.
 const POLICY: &str = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; \
-    img-src 'self' data: blob:; worker-src 'self' blob:; connect-src 'self' blob: data:; object-src 'none'; base-uri 'none'; \
+    img-src 'self' data: blob:; worker-src 'self' blob:; connect-src 'self' ws://127.0.0.1:* ws://localhost:* blob: data:; object-src 'none'; base-uri 'none'; \
     form-action 'none'";
 
 /// What is served where there is no bundle.
