@@ -31,7 +31,7 @@ scenario('edges picked by mouse, the ball pulled, and the remedy of an error app
   assert.equal(result.closed, true);
   assert.ok(result.faces > 432, 'the fillet has faces of its own');
   await page.selectOption('#looks select[aria-label="Colour of faces"]', 'origin');
-  await session.picture('ball');
+  await session.picture('studio-blend');
 
   // A ball that does not fit: the sentence, the place, the remedy.
   await page.click('#properties details.more > summary');
@@ -43,7 +43,7 @@ scenario('edges picked by mouse, the ball pulled, and the remedy of an error app
   const failure = await session.failure();
   assert.match(failure.sentence, /radius/);
   assert.ok(failure.place, 'an error has a place');
-  await session.picture('error');
+  await session.picture('studio-error');
   await session.press('Show the place');
   await session.picture('place');
   await page.click('#failure button.primary');

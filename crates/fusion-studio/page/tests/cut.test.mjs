@@ -70,5 +70,5 @@ scenario('loops lit up with numbers, joined, and shaped by a silhouette', {}, as
   assert.equal(silhouette.length, 1);
   assert.ok(silhouette[0].view[1] > 0.99, 'seen from the front');
   assert.equal(await session.failure(), undefined);
-  await session.picture('silhouette');
+  await session.picture('studio-compose');
 });

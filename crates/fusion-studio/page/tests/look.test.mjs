@@ -35,7 +35,7 @@ scenario('colours, stripes, triangles, themes and measures', { files: { 'block.o
     });
     assert.deepEqual(coloured[1], colour === 'zebra' ? 'ShaderMaterial' : 'MeshPhongMaterial');
     assert.equal(coloured[0], true);
-    await session.picture(`look-${colour}`);
+    await session.picture(`studio-${colour}`);
   }
   await colours.selectOption('origin');
   await page.keyboard.press('w');

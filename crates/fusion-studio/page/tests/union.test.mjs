@@ -54,7 +54,8 @@ scenario('two scans, united by mouse, with a radius dragged, undone, exported an
   }
   assert.equal(new Set(radii).size, 10, `ten radii: ${radii}`);
   assert.ok(radii[9] > radii[0]);
-  await session.picture('radius');
+  await session.page.selectOption('#looks select[aria-label="Colour of faces"]', 'origin');
+  await session.picture('studio');
   const filleted = (await session.evaluated()).shapes[0];
   assert.equal(filleted.closed, true);
 

@@ -105,7 +105,9 @@ function list(field: Field, item: Field, value: Json, change: Change, context: C
   const replaced = (i: number, v: Json) => change(v === null ? without(values, i) : values.map((old, k) => (k === i ? v : old)));
   const rows = values.map((v, i) =>
     h('div', { className: 'item' }, control(item, v, (next) => replaced(i, next), context), button('close', '', 'Remove', () => change(without(values, i)))));
-  const box = h('div', { className: 'list' }, ...rows);
+  // Strokes have many points; they are folded away.
+  const many = rows.length > 6;
+  const box = h('div', { className: 'list' }, ...(many ? [h('details', { className: 'many' }, h('summary', {}, `${rows.length} entries`), ...rows)] : rows));
   const add = (v: Json) => change([...values, v]);
   if (item.kind.is === 'vector' && item.kind.size === 3) {
     let all = [...values];

@@ -14,11 +14,12 @@ export function seamCard(store: Store, radius: Radius, flyTo: (place: [number, n
   const what = picked.length === 0 ? 'Fillet' : `${picked.length} ${seams ? 'seam' : 'feature curve'}${picked.length > 1 ? 's' : ''}`;
   const largest = store.largest?.radius ?? radius.guess();
   const value = radius.value ?? 0;
-  const slider = h('input', { type: 'range', min: '0', max: '1', step: 'any', value: String(Math.min(1, value / largest)), 'aria-label': 'Radius' });
+  // Small radii are wanted more often than the largest, so they get more of the slider.
+  const slider = h('input', { type: 'range', min: '0', max: '1', step: 'any', value: String(Math.min(1, Math.sqrt(value / largest))), 'aria-label': 'Radius' });
   const typed = h('input', { type: 'number', step: 'any', min: '0', value: value ? String(Number(value.toPrecision(4))) : '', placeholder: 'sharp' });
   slider.addEventListener('input', () => {
     slider.dataset.dragging = 'yes';
-    const next = Number((Number(slider.value) * largest).toPrecision(4));
+    const next = Number((Number(slider.value) ** 2 * largest).toPrecision(4));
     typed.value = String(next);
     radius.drag(next);
   });
