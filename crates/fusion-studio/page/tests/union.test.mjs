@@ -48,7 +48,7 @@ scenario('two scans, united by mouse, with a radius dragged, undone, exported an
     const { x, y, width, height } = /** @type {{x: number, y: number, width: number, height: number}} */ (await slider.boundingBox());
     const at = Number(await slider.inputValue());
     const knob = (/** @type {number} */ share) => ({ x: x + 8 + share * (width - 16), y: y + height / 2 });
-    await session.pull(knob(at), knob(0.06 * i), 4);
+    await session.pull(knob(at), knob(0.2 + 0.04 * i), 4);
     await session.settled();
     radii.push((await session.document()).steps[0].options.radius);
   }
