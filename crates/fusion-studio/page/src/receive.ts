@@ -27,7 +27,11 @@ function event(event: ServerEvent, store: Store) {
       store.changed('document', 'selection');
       break;
     case 'progress':
-      store.workSince ??= performance.now();
+      if (store.workSince === undefined) {
+        store.workSince = performance.now();
+        // What is seen is marked as old once that takes long.
+        setTimeout(() => store.work && store.changed('work'), 700);
+      }
       store.work = { stage: event.stage, fraction: event.fraction };
       store.changed('work');
       break;

@@ -21,7 +21,7 @@ scenario('an evaluation is cancelled, and the last valid result stays', {}, asyn
   assert.ok((await session.covered()) > 0.02, 'what was valid is still seen');
   await page.keyboard.press('Control+z');
   await session.settled();
-  assert.equal((await session.document()).steps[0].options.edge_length, undefined);
+  assert.equal((await session.document()).steps[0].options.edge_length, '1%');
 });
 
 scenario('two pages show the same document', {}, async (session, page) => {

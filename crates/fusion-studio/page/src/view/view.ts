@@ -137,7 +137,7 @@ export class View {
       const row = store.rowOf(name);
       const part = row?.table === 'part' ? row.index : undefined;
       const ghost = !results.includes(name);
-      manners.set(name, { selected: selected.includes(name), ghost, dimmed: failed || store.work !== undefined && store.work.fraction !== null && this.late(), colour: shapeColour(part) });
+      manners.set(name, { selected: selected.includes(name), ghost, dimmed: failed || (store.work !== undefined && this.late()), colour: shapeColour(part) });
     }
     this.shapes.draw(manners, store.look);
   }
