@@ -37,8 +37,8 @@ export class Seams {
     this.asked = key;
     // A step that was just made of picked curves blends along these.
     if (blends && store.curves?.step === row.index && !before.startsWith(`[${row.index},`)) return;
-    const kind = !blends && known && known.closed === false ? 'loops' : 'features';
-    if (kind === 'loops') return this.takeLoops(key, [shape]);
+    // A part's file is not known to be closed before it is looked at.
+    if (!blends && known?.closed !== true && (await this.takeLoops(key, [shape]))) return;
     const answer = await this.ask(blends ? row.index : null, shape);
     if (this.asked !== key) return;
     if (!answer) {
@@ -50,7 +50,7 @@ export class Seams {
       // Of a boolean only the seams are blended.
       const seams = answer.curves.filter((curve) => curve.seam);
       if (blends && step.do !== 'blend' && seams.length > 0) answer.curves = seams;
-      store.curves = { ...answer, step: blends ? row.index : null, shape, kind, picked };
+      store.curves = { ...answer, step: blends ? row.index : null, shape, kind: 'features', picked };
     }
     store.largest = undefined;
     store.changed('curves');
@@ -60,7 +60,7 @@ export class Seams {
   /** The loops of all selected shapes that have any. */
   private async renewLoops() {
     const { store } = this;
-    const shapes = store.shapes.filter((name) => store.evaluated?.shapes.some((s) => s.name === name && s.closed === false));
+    const shapes = store.shapes.filter((name) => store.evaluated?.shapes.some((s) => s.name === name && s.closed !== true));
     if (shapes.length === 0) return this.drop();
     const key = JSON.stringify(shapes.map((name) => [name, store.evaluated?.shapes.find((s) => s.name === name)?.revision]));
     if (key === this.asked) return;
@@ -68,7 +68,8 @@ export class Seams {
     await this.takeLoops(key, shapes);
   }
 
-  private async takeLoops(key: string, shapes: string[]) {
+  /** Shows the loops of these shapes; answers whether there are any, or the question has gone stale. */
+  private async takeLoops(key: string, shapes: string[]): Promise<boolean> {
     const { store } = this;
     const curves: Curve[] = [];
     for (const shape of shapes) {
@@ -76,12 +77,14 @@ export class Seams {
       const shift = (p: Vector): Vector => [p[0] + answer!.origin[0], p[1] + answer!.origin[1], p[2] + answer!.origin[2]];
       for (const loop of answer?.curves ?? []) curves.push({ ...loop, shape, closed: true, points: loop.points.map(shift) });
     }
-    if (this.asked !== key) return;
+    if (this.asked !== key) return true;
+    if (curves.length === 0 && shapes.length === 1) return false;
     const was = store.curves?.kind === 'loops' ? store.curves.picked : [];
     const picked = curves.filter((c) => was.some((old) => old.shape === c.shape && old.id === c.id));
     store.curves = { origin: [0, 0, 0], curves, step: null, shape: shapes[0], kind: 'loops', picked };
     store.largest = undefined;
     store.changed('curves');
+    return true;
   }
 
   private async ask(step: number | null, shape: string): Promise<Curves | undefined> {
