@@ -257,7 +257,7 @@ fn a_cancelled_evaluation_says_so_and_the_next_one_is_done() {
     let folder = tempfile::tempdir().unwrap();
     let (_server, mut page) = union_of_balls(folder.path());
     for n in 0..6 {
-        let radius = 0.1 + 0.01 * f64::from(n);
+        let radius = 0.11 + 0.01 * f64::from(n);
         page.events.clear();
         let set = json!({ "do": "set", "table": "step", "index": 0, "key": "radius", "value": radius });
         let version = page.ok(set)["version"].clone();
