@@ -7,7 +7,7 @@ import { cli, scenario } from './harness.mjs';
 import { scan } from './models.mjs';
 
 scenario('two scans, united by mouse, with a radius dragged, undone, exported and replayed', {}, async (session) => {
-  await session.drop({ 'left.obj': scan(24, [0, 0, 0], 1), 'right.obj': scan(24, [4, 0, 0], 0.8) });
+  await session.drop({ 'left.obj': scan(12, [0, 0, 0], 1), 'right.obj': scan(12, [4, 0, 0], 0.8) });
   assert.ok((await session.covered()) > 0.02, 'the parts must be seen');
 
   // Dragged over by an arrow of the gizmo.
