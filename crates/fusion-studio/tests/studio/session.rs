@@ -138,23 +138,18 @@ fn only_what_changed_is_sent_and_every_client_sees_it() {
 }
 
 #[test]
-#[ignore = "not yet seen to pass: no answer within two minutes in an unoptimised build"]
+#[ignore = "rewritten and not yet run: a radius that is too large is reduced, and fails nothing"]
 fn a_step_that_fails_says_why_and_what_would_work() {
     let folder = tempfile::tempdir().unwrap();
     let (_server, mut page) = union_of_balls(folder.path());
     let before = page.shapes["both"].header.clone();
-    page.ok(json!({ "do": "set_all", "edits": [
-        { "table": "step", "index": 0, "key": "radius", "value": 50 },
-        { "table": "step", "index": 0, "key": "overlap", "value": "error" },
-    ] }));
+    page.ok(json!({ "do": "add_step", "verb": "blend", "of": ["both"], "options": { "angle": 170, "radius": 0.01 } }));
     let failed = page.wait(|e| e["event"] == "failed");
-    assert_eq!(failed["step"], 0);
-    assert!(failed["sentence"].as_str().unwrap().starts_with("step 1, union of one, two: "), "{failed}");
+    assert_eq!(failed["step"], 1);
+    assert!(failed["sentence"].as_str().unwrap().starts_with("step 2, blend of both: "), "{failed}");
     assert_eq!(page.shapes["both"].header, before, "the last result stays");
-    let mut edit = failed["remedy"]["edit"].clone();
-    assert_eq!(edit["do"], "set", "{failed}");
-    edit["id"] = 1000.into();
-    let version = page.ok(edit)["version"].clone();
+    assert_eq!(failed["remedy"]["edit"]["key"], "angle", "{failed}");
+    let version = page.ok(json!({ "do": "undo" }))["version"].clone();
     page.evaluated(&version);
     let gone = page.refused(json!({ "do": "set", "table": "step", "index": 0, "key": "radios", "value": 1 }));
     assert!(gone.contains("did you mean `radius`"), "{gone}");
