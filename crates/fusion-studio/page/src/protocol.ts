@@ -19,6 +19,8 @@ export interface Step {
   index: number;
   do: string;
   of: string[];
+  /** The same as it is written, with the numbers of loops. */
+  written_of?: string | string[] | null;
   /** The name of its result. */
   as: string;
   off: boolean;

@@ -67,7 +67,7 @@ export function properties(host: HTMLElement, store: Store, actions: Actions, wo
     const operation = words.operations.get(step.do);
     const rename = (name: string) => void (name && actions.rename(row, name));
     return h('section', {}, head(step.do, resultOf(step), operation?.description ?? '', rename),
-      h('h3', {}, 'Of'), inputs(row, step.of),
+      h('h3', {}, 'Of'), inputs(row, [step.written_of ?? step.of].flat()),
       h('h3', {}, `Options of ${label(step.do)}`),
       form(operation?.fields ?? [], step.options, (key, value) => void actions.set(row, key, value), context),
       remove());
