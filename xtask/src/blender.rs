@@ -1,5 +1,6 @@
 //! The Blender extension: its zip, and its tests in Blender as a Python module.
 
+use crate::doors::{absent, insisted, target, target_profile};
 use crate::{Fault, blender_options, python_tests, root};
 use clap::Args;
 use mesh_core::Stopwatch;
@@ -37,7 +38,7 @@ pub fn run(options: &Options) -> Result<(), Fault> {
 
 fn pack(options: &Options) -> Result<(), Fault> {
     let python = python_tests::interpreter().ok_or("Python 3.9 or later is not installed")?;
-    let target = python_tests::target()?;
+    let target = target()?;
     let output = options.output.clone().unwrap_or_else(|| zip(&target));
     let wheel = match &options.wheel {
         Some(wheel) => wheel.clone(),
@@ -51,12 +52,12 @@ fn pack(options: &Options) -> Result<(), Fault> {
 /// Packs the extension and runs its tests, or says why not.
 pub fn test() -> Result<(), Fault> {
     let start = Stopwatch::start();
-    let target = python_tests::target()?;
+    let target = target()?;
     let Some(python) = blender(&target.join("bpy"))? else {
-        return python_tests::absent("blender", "Blender as a Python module (pip install bpy) is not there");
+        return absent("blender", "Blender as a Python module (pip install bpy) is not there");
     };
     pack(&Options { output: None, wheel: None, test: false })?;
-    let program = python_tests::target_profile(&target).join(format!("fusion-cli{}", std::env::consts::EXE_SUFFIX));
+    let program = target_profile(&target).join(format!("fusion-cli{}", std::env::consts::EXE_SUFFIX));
     let mut tests = Command::new(python);
     tests.arg(source().join("tests/run.py")).arg(zip(&target)).env("FUSION_CLI", program);
     if !tests.env("PYTHONDONTWRITEBYTECODE", "1").status()?.success() {
@@ -70,7 +71,7 @@ pub fn test() -> Result<(), Fault> {
 fn blender(folder: &Path) -> Result<Option<PathBuf>, Fault> {
     let own = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
     let there = || Command::new(&own).args(["-c", "import bpy"]).output().is_ok_and(|o| o.status.success());
-    if there() || !python_tests::insisted("blender") {
+    if there() || !insisted("blender") {
         return Ok(there().then_some(own));
     }
     let right = "import sys; sys.exit(sys.version_info[:2] != (3, 11))";

@@ -1,6 +1,6 @@
 //! Everything a change must pass, in order of how fast it fails.
 
-use crate::{Fault, blender, python_tests, regress, root, tidy};
+use crate::{Fault, blender, python_tests, regress, root, studio, tidy};
 use mesh_core::Stopwatch;
 use std::process::Command;
 
@@ -19,6 +19,7 @@ pub fn run() -> Result<(), Fault> {
     cargo(&["test", "--workspace"])?;
     python_tests::run()?;
     blender::test()?;
+    studio::test()?;
     // Packs every crate as it would be published, without building it again.
     cargo(&["package", "--workspace", "--exclude", "xtask", "--no-verify", "--allow-dirty", "--quiet"])?;
     regress::run(&regress::Options::default())?;

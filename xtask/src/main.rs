@@ -9,8 +9,10 @@
 //! | `bench.rs` | benchmarks into a page |
 //! | `pages.rs` | what stands between marks on a page |
 //! | `python.rs`, `python_types.rs` | the Python functions of all operations |
+//! | `doors.rs` | what the tests of all doors share |
 //! | `python_tests.rs` | the Python module, built and tested |
 //! | `blender.rs`, `blender_options.rs` | the Blender extension: its zip, its tests, its options |
+//! | `studio.rs` | the studio's page, built, and driven in a browser |
 //! | `circles.rs` | files that import each other |
 //! | `tidy.rs` | crate arrows, file lengths, citations, paths, pages that are stale |
 
@@ -20,6 +22,7 @@ mod blender_options;
 mod ci;
 mod circles;
 mod collect;
+mod doors;
 mod fixtures;
 mod models;
 mod pages;
@@ -27,6 +30,7 @@ mod python;
 mod python_tests;
 mod python_types;
 mod regress;
+mod studio;
 mod tidy;
 
 use clap::{Parser, Subcommand};
@@ -62,6 +66,8 @@ enum Chore {
     Reference,
     /// Runs the cases of fixtures/ against their approved records; with --models also real models
     Regress(regress::Options),
+    /// Builds the studio's page into target/studio
+    Studio,
     /// Checks crate arrows, file lengths, citations, paths and the reference of documents
     Tidy,
 }
@@ -76,6 +82,7 @@ fn main() -> ExitCode {
         Chore::Python => python::write(),
         Chore::Reference => pages::DOCUMENTS.renew(&fusion::document::reference()),
         Chore::Regress(options) => regress::run(&options),
+        Chore::Studio => studio::build(),
         Chore::Tidy => tidy::run(),
     };
     match result {
@@ -112,7 +119,7 @@ fn walk(folder: &Path, files: &mut Vec<PathBuf>) {
     entries.sort();
     for path in entries {
         if path.is_dir() {
-            if path.file_name().is_none_or(|n| n != "target") {
+            if path.file_name().is_none_or(|n| n != "target" && n != "node_modules") {
                 walk(&path, files);
             }
         } else {

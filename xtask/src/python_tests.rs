@@ -1,19 +1,16 @@
 //! Builds the Python module with the build of the tests, and runs its tests in an environment of its own.
 
+use crate::doors::{absent, insisted, succeeds_in_time, target, target_profile};
 use crate::{Fault, root};
 use mesh_core::Stopwatch;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX, EXE_SUFFIX};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::thread;
 use std::time::Duration;
 
 /// What the tests need besides NumPy; only pytest must be there.
 const PACKAGES: [&str; 6] = ["numpy", "pytest", "trimesh", "pyvista", "mypy", "pyright"];
-/// Set by who wants a failure where there is no Python.
-const INSISTS: &str = "FUSION_CI_REQUIRE";
-
 /// The tests are ended, as failed, after this long.
 const LIMIT: Duration = Duration::from_secs(360);
 
@@ -39,27 +36,11 @@ pub fn run() -> Result<(), Fault> {
     tests.env("PYTHONPATH", &site).env("PYTHONDONTWRITEBYTECODE", "1").current_dir(crate_folder());
     let program = module.with_file_name(format!("fusion-cli{EXE_SUFFIX}"));
     tests.env("FUSION_CLI", program).env("JOBS", JOBS);
-    if !succeeds_in_time(&mut tests)? {
+    if !succeeds_in_time(&mut tests, LIMIT)? {
         return Err("the tests of the Python module failed".into());
     }
     println!("ci: python: {:.0} s", start.elapsed().as_secs_f64());
     Ok(())
-}
-
-/// Whether a program succeeds, and in time.
-fn succeeds_in_time(program: &mut Command) -> Result<bool, Fault> {
-    let (start, mut child) = (Stopwatch::start(), program.spawn()?);
-    loop {
-        if let Some(status) = child.try_wait()? {
-            return Ok(status.success());
-        }
-        if start.elapsed() > LIMIT {
-            child.kill()?;
-            child.wait()?;
-            return Err(format!("the tests of the Python module took more than {} s", LIMIT.as_secs()).into());
-        }
-        thread::sleep(Duration::from_millis(100));
-    }
 }
 
 /// Whether the environment has Ray, which is installed only where that is insisted on: it takes 600 MB.
@@ -71,20 +52,6 @@ fn has_ray(python: &Path) -> Result<bool, Fault> {
     let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "ray[data]"];
     let installed = Command::new(python).args(pip).status()?.success() && there();
     if installed { Ok(true) } else { Err(format!("Ray cannot be installed, and {INSISTS} asks for it").into()) }
-}
-
-/// Whether a door must be tested.
-pub fn insisted(door: &str) -> bool {
-    std::env::var(INSISTS).is_ok_and(|names| names.split(',').any(|name| name.trim() == door))
-}
-
-/// Says that there was nothing to do, or fails if that was insisted on.
-pub fn absent(door: &str, why: &str) -> Result<(), Fault> {
-    if insisted(door) {
-        return Err(format!("{why}, and {INSISTS} asks for {door}").into());
-    }
-    println!("ci: skipped {door}: {why}");
-    Ok(())
 }
 
 /// A Python that is recent enough.
@@ -131,11 +98,6 @@ pub fn build(target: &Path) -> Result<PathBuf, Fault> {
     Ok(target_profile(target).join(format!("{DLL_PREFIX}fusion_python{DLL_SUFFIX}")))
 }
 
-/// The folder of the profile's builds.
-pub fn target_profile(target: &Path) -> PathBuf {
-    target.join(if cfg!(debug_assertions) { "debug" } else { "release" })
-}
-
 /// Packs a wheel and installs it into a folder of its own.
 fn install(python: &Path, module: &Path, environment: &Path) -> Result<PathBuf, Fault> {
     let site = emptied(environment.join("package"))?;
@@ -174,12 +136,4 @@ fn emptied(folder: PathBuf) -> Result<PathBuf, Fault> {
 
 fn crate_folder() -> PathBuf {
     root().join("crates/fusion-python")
-}
-
-/// The folder of builds.
-pub fn target() -> Result<PathBuf, Fault> {
-    // This program is in the folder of a profile.
-    let program = std::env::current_exe()?;
-    let target = program.ancestors().nth(2);
-    Ok(target.ok_or("the folder of builds is not known")?.to_path_buf())
 }

@@ -146,7 +146,7 @@ pub(crate) fn choose(
     choice: &Choice,
 ) -> Result<(Vec<Chosen>, Vec<Diagnostic>), Error> {
     let picked = picks::trace(mesh, &choice.picked)?;
-    let seams = choice.seams.as_ref().map_or(Ok(vec![]), |parts| seams(mesh, parts))?;
+    let seams = choice.seams.as_ref().map_or(Ok(vec![]), |parts| seam_curves(mesh, parts))?;
     let all = feature_curves(mesh, features);
     let others = !picked.is_empty() || !seams.is_empty();
     let named = others || !choice.ids.is_empty() || !choice.near.is_empty();
@@ -300,8 +300,19 @@ fn follow_chains(mesh: &Connected<TriMesh>, all: &[FeatureCurve], chosen: &mut B
 }
 
 /// The curves between faces of different parts, in order of their lowest halfedge; they end where not just two of their
-/// edges meet.
-fn seams(mesh: &Connected<TriMesh>, parts: &[Option<u32>]) -> Result<Vec<BlendCurve>, Error> {
+/// edges meet. `parts` holds the part of every face, where it has one.
+///
+/// ```
+/// use fusion::mesh_core::{Connected, shapes};
+/// let cube = Connected::new(shapes::cuboid(glam::DVec3::ONE))?;
+/// let seams = fusion::choice::seam_curves(&cube, &[vec![Some(0); 2], vec![Some(1); 10]].concat())?;
+/// assert_eq!((seams.len(), seams[0].halfedges.len(), seams[0].closed), (1, 4, true));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`Refusal`]: as many parts as faces are needed, and one edge between different ones.
+pub fn seam_curves(mesh: &Connected<TriMesh>, parts: &[Option<u32>]) -> Result<Vec<BlendCurve>, Error> {
     if parts.len() != mesh.face_count() {
         return Err(Refusal::OriginsOfAnother { faces: mesh.face_count(), entries: parts.len() }.into());
     }

@@ -11,6 +11,8 @@ use glam::DVec3;
 use mesh_core::{Connected, Faces, Origins, Stage, TriMesh, Watch};
 use mesh_io::{Format, Model};
 use spine::BlendCurve;
+use std::ops::Range;
+use std::sync::OnceLock;
 use tri_intersect::{Boolean, Contact, Operation, Warning, boolean};
 
 /// What to do with the parts.
@@ -46,40 +48,53 @@ impl SeamChoice {
 /// # Errors
 /// [`Error`]; a radius that does not fit comes with a place and a radius that does.
 pub fn join(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcome, Error> {
+    join_from(parts, params, &OnceLock::new(), watch)
+}
+
+/// The same, with the first two parts as they were joined before, or kept for the next time: that depends on them and the operation
+/// alone, and not on the radius.
+pub(crate) fn join_from(
+    parts: &[Model],
+    params: &Params,
+    first: &OnceLock<First>,
+    watch: &Watch,
+) -> Result<Outcome, Error> {
     if params.blend.is_some() {
         extent::check(parts)?;
     }
-    surviving(params.blend.as_ref(), |blend| overlay_all(parts, params, blend, watch))
+    surviving(params.blend.as_ref(), |blend| overlay_all(parts, params, blend, first, watch))
 }
 
 fn overlay_all(
     parts: &[Model],
     params: &Params,
     blend: Option<&blend::Params>,
+    first: &OnceLock<First>,
     watch: &Watch,
 ) -> Result<Outcome, Error> {
-    let first: Vec<&dyn Faces> = parts.iter().map(|m| &m.mesh as &dyn Faces).collect();
+    let faces: Vec<&dyn Faces> = parts.iter().map(|m| &m.mesh as &dyn Faces).collect();
     let mut report = Report::new("join", parts.iter().map(|m| Counts::of("", &m.mesh)).collect());
-    let mut solids = report.time("connect", || connect(parts))?.into_iter();
-    let (Some(mut whole), 2..) = (solids.next(), parts.len()) else { return Err(Error::TooFew(parts.len())) };
+    let first = joined_first(parts, params, first, &mut report, watch)?;
     let taken =
-        if blend.is_some() && !params.seams.is_all() { Some(choose_seams(parts, params, watch)?) } else { None };
-    let mut count = 0;
-    for (part, solid) in (1..).zip(solids) {
-        let step = (parts.len() > 2).then_some(part);
-        let cut = overlay(&whole, &solid, step, params, &mut report, watch)?;
-        let origins = cut.origins.compose(&[whole.stage(), solid.stage()], &first);
+        if blend.is_some() && !params.seams.is_all() { Some(choose_seams(parts, params, first, watch)?) } else { None };
+    // Seams that come out otherwise beside a blended one are all taken.
+    let chosen = |id: usize| taken.as_ref().is_none_or(|t| t.ids.get(&id).copied().unwrap_or(id >= t.count));
+    let blended = |whole: Solid, numbers: Range<usize>, curves: Vec<BlendCurve>, report: &mut Report| {
+        let Some(blend) = blend else { return Ok(whole) };
+        let (ids, curves): (Vec<usize>, Vec<_>) = numbers.zip(curves).filter(|(id, _)| chosen(*id)).unzip();
+        if curves.is_empty() { Ok(whole) } else { round(&whole, ids, curves, blend, &faces, report, watch) }
+    };
+    let mut count = first.curves.len();
+    let mut whole = blended(first.whole.clone(), 0..count, first.curves.clone(), &mut report)?;
+    let rest = report.time("connect", || connect(parts, 2))?;
+    for (part, solid) in (2..).zip(rest) {
+        let cut = overlay(&whole, &solid, Some(part), params, &mut report, watch)?;
+        let origins = cut.origins.compose(&[whole.stage(), solid.stage()], &faces);
         let numbers = count..count + cut.seams.len();
         count = numbers.end;
         whole = Solid::new(cut.mesh, origins)?;
-        if let Some(blend) = blend {
-            let of = |s: &tri_intersect::Seam| BlendCurve::from_vertices(&whole.mesh, &s.vertices);
-            let curves = cut.seams.iter().map(of).collect::<Result<Vec<_>, _>>()?;
-            // Seams that come out otherwise beside a blended one are all taken.
-            let chosen = |id: &usize| taken.as_ref().is_none_or(|t| t.ids.get(id).copied().unwrap_or(id >= &t.count));
-            let (ids, curves) = numbers.zip(curves).filter(|(id, _)| chosen(id)).unzip();
-            whole = round(&whole, ids, curves, blend, &first, &mut report, watch)?;
-        }
+        let curves = curves(&whole, &cut.seams)?;
+        whole = blended(whole, numbers, curves, &mut report)?;
     }
     if let Some(taken) = taken {
         for diagnostic in taken.told {
@@ -87,6 +102,46 @@ fn overlay_all(
         }
     }
     finish(parts, whole.mesh.into_mesh(), whole.origins, params.format, report, watch)
+}
+
+/// The first two parts joined, before their seams are blended.
+#[derive(Debug)]
+pub(crate) struct First {
+    whole: Solid,
+    curves: Vec<BlendCurve>,
+    /// What there is to tell of it.
+    told: Vec<Diagnostic>,
+}
+
+/// What is known of the first two parts, or made now; the report tells the same.
+fn joined_first<'a>(
+    parts: &[Model],
+    params: &Params,
+    known: &'a OnceLock<First>,
+    report: &mut Report,
+    watch: &Watch,
+) -> Result<&'a First, Error> {
+    if let Some(first) = known.get() {
+        *report.figures.entry("seams".into()).or_default() += first.curves.len() as f64;
+        first.told.iter().for_each(|told| report.tell(told.clone()));
+        return Ok(first);
+    }
+    let two = parts.get(..2).ok_or(Error::TooFew(parts.len()))?;
+    let mut solids = report.time("connect", || connect(two, 0))?.into_iter();
+    let (Some(one), Some(other)) = (solids.next(), solids.next()) else { return Err(Error::TooFew(parts.len())) };
+    let before = report.diagnostics.len();
+    let cut = overlay(&one, &other, (parts.len() > 2).then_some(1), params, report, watch)?;
+    let told = report.diagnostics[before..].to_vec();
+    let faces: Vec<&dyn Faces> = two.iter().map(|m| &m.mesh as &dyn Faces).collect();
+    let origins = cut.origins.compose(&[one.stage(), other.stage()], &faces);
+    let whole = Solid::new(cut.mesh, origins)?;
+    let curves = curves(&whole, &cut.seams)?;
+    Ok(known.get_or_init(|| First { whole, curves, told }))
+}
+
+fn curves(whole: &Solid, seams: &[tri_intersect::Seam]) -> Result<Vec<BlendCurve>, Error> {
+    let of = |s: &tri_intersect::Seam| BlendCurve::from_vertices(&whole.mesh, &s.vertices);
+    Ok(seams.iter().map(of).collect::<Result<Vec<_>, _>>()?)
 }
 
 /// The seams that a choice names.
@@ -101,28 +156,27 @@ struct Taken {
 fn plain_steps(
     parts: &[Model],
     params: &Params,
+    first: &First,
     watch: &Watch,
     mut look: impl FnMut(&Solid, Vec<BlendCurve>) -> Result<(), Error>,
 ) -> Result<(), Error> {
+    look(&first.whole, first.curves.clone())?;
     let mut unused = Report::default();
-    let mut solids = connect(parts)?.into_iter();
-    let (Some(mut whole), 2..) = (solids.next(), parts.len()) else { return Err(Error::TooFew(parts.len())) };
-    for (part, solid) in (1..).zip(solids) {
-        let step = (parts.len() > 2).then_some(part);
-        let cut = overlay(&whole, &solid, step, params, &mut unused, watch)?;
-        whole = Solid::new(cut.mesh, cut.origins)?;
-        let curves = cut.seams.iter().map(|s| BlendCurve::from_vertices(&whole.mesh, &s.vertices));
-        look(&whole, curves.collect::<Result<Vec<_>, _>>()?)?;
+    let mut later: Option<Solid> = None;
+    for (part, solid) in (2..).zip(connect(parts, 2)?) {
+        let cut = overlay(later.as_ref().unwrap_or(&first.whole), &solid, Some(part), params, &mut unused, watch)?;
+        let whole = later.insert(Solid::new(cut.mesh, cut.origins)?);
+        look(whole, curves(whole, &cut.seams)?)?;
     }
     Ok(())
 }
 
 /// Looks at the seams of plain booleans, since a place may be nearest to one of a later step.
-fn choose_seams(parts: &[Model], params: &Params, watch: &Watch) -> Result<Taken, Error> {
+fn choose_seams(parts: &[Model], params: &Params, first: &First, watch: &Watch) -> Result<Taken, Error> {
     let near: Vec<Near> = params.seams.near.iter().map(|&p| p.into()).collect();
     let mut best: Vec<Option<(usize, DVec3, f64)>> = vec![None; near.len()];
     let mut lengths = vec![];
-    plain_steps(parts, params, watch, |whole, curves| {
+    plain_steps(parts, params, first, watch, |whole, curves| {
         for (best, near) in best.iter_mut().zip(&near) {
             let found = nearest(&whole.mesh, curves.iter().map(|c| &c.halfedges[..]), near.at);
             let found = found.map(|(i, place, distance)| (lengths.len() + i, place, distance));
@@ -155,11 +209,13 @@ fn choose_seams(parts: &[Model], params: &Params, watch: &Watch) -> Result<Taken
 /// As [`join`]; [`Error::Blend`] if no radius works or there is no seam.
 pub fn max_radius(parts: &[Model], params: &Params, watch: &Watch) -> Result<Limit, Error> {
     extent::check(parts)?;
-    let taken = choose_seams(parts, params, watch)?;
+    let known = OnceLock::new();
+    let first = joined_first(parts, params, &known, &mut Report::default(), watch)?;
+    let taken = choose_seams(parts, params, first, watch)?;
     let how = params.blend.clone().unwrap_or_else(|| blend::Params::new(1.0));
     let mut least: Option<Limit> = None;
     let mut count = 0;
-    plain_steps(parts, params, watch, |whole, curves| {
+    plain_steps(parts, params, first, watch, |whole, curves| {
         let numbers = count..count + curves.len();
         count = numbers.end;
         let chosen = numbers.zip(curves).filter(|(id, _)| taken.ids.get(id) == Some(&true));
@@ -176,6 +232,7 @@ pub fn max_radius(parts: &[Model], params: &Params, watch: &Watch) -> Result<Lim
 }
 
 /// A mesh on its way, and its origins in the inputs.
+#[derive(Clone, Debug)]
 struct Solid {
     mesh: Connected<TriMesh>,
     origins: Origins,
@@ -191,14 +248,15 @@ impl Solid {
     }
 }
 
-fn connect(parts: &[Model]) -> Result<Vec<Solid>, Error> {
+/// The parts from the one with this number on.
+fn connect(parts: &[Model], from: usize) -> Result<Vec<Solid>, Error> {
     let connect = |(part, model): (usize, &Model)| {
         let mesh = &model.mesh;
         let origins = Origins::identity(part as u32, mesh.positions.len(), mesh.faces.len());
         let mesh = Connected::new(mesh.clone()).map_err(|source| Error::NotManifold { part, source })?;
         Ok(Solid { mesh, origins })
     };
-    parts.iter().enumerate().map(connect).collect()
+    parts.iter().enumerate().skip(from).map(connect).collect()
 }
 
 fn overlay(
@@ -234,9 +292,6 @@ fn round(
     report: &mut Report,
     watch: &Watch,
 ) -> Result<Solid, Error> {
-    if curves.is_empty() {
-        return Ok(Solid { mesh: whole.mesh.clone(), origins: whole.origins.clone() });
-    }
     let blended = report.time("blend", || blend::blend(&whole.mesh, &curves, params, watch))?;
     let radius = params.radius * params.radii.rest;
     let part = |(whole, (id, curve)): (usize, (usize, BlendCurve))| Part {

@@ -116,7 +116,7 @@ pub(crate) fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
 }
 
 /// 2·inradius/circumradius: 1 for equilateral triangles, 0 for degenerate ones.
-fn shape_quality([a, b, c]: [DVec3; 3]) -> f64 {
+pub fn shape_quality([a, b, c]: [DVec3; 3]) -> f64 {
     let [x, y, z] = [b.distance(c), c.distance(a), a.distance(b)];
     let double_area = (b - a).cross(c - a).length();
     // r = A/s and R = xyz/(4A), with 2A the double area.

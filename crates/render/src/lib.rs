@@ -42,6 +42,7 @@ mod raster;
 mod scene;
 mod wire;
 
+pub use color::shape_quality;
 pub use params::{Color, Error, Ground, Params, Projection, Shading, Wireframe};
 pub use picture::picture;
 pub use raster::{Picture, save};

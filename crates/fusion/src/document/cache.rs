@@ -1,17 +1,23 @@
 //! Results kept: in memory up to a stated size, and in a folder where one is given.
 
 use super::entry::Entry;
-use super::key::Key;
+use super::key::{self, Key};
 use super::store::Store;
+use crate::join::First;
+use mesh_io::Model;
 use std::collections::HashMap;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 /// What steps have made, by all that it depends on, so that a step whose key is known is not taken again. Several threads may
 /// share one, and several processes one folder.
 #[derive(Debug)]
 pub struct Cache {
     memory: Mutex<Memory>,
+    /// Models that are in use somewhere, each with its key, so that it is not hashed for every evaluation.
+    models: Mutex<Vec<(Weak<Model>, Key)>>,
+    /// What booleans made before their seams were blended, the newest last.
+    firsts: Mutex<Vec<(Key, Arc<OnceLock<First>>)>>,
     store: Option<Store>,
 }
 
@@ -33,11 +39,14 @@ struct Kept {
     at: u64,
 }
 
+/// Booleans that are kept on their way.
+const FIRSTS: usize = 4;
+
 /// Memory taken where nothing else is said.
 const MOST: usize = 1 << 30;
 
 impl Default for Cache {
-    /// A gigabyte of memory, and no folder.
+    /// A gigabyte of memory for results, and no folder.
     fn default() -> Self {
         Self::in_memory(MOST)
     }
@@ -46,7 +55,8 @@ impl Default for Cache {
 impl Cache {
     /// At most so many bytes of memory, about; 0 keeps nothing.
     pub fn in_memory(bytes: usize) -> Self {
-        Self { memory: Mutex::new(Memory { most: bytes, ..Memory::default() }), store: None }
+        let memory = Mutex::new(Memory { most: bytes, ..Memory::default() });
+        Self { memory, models: Mutex::default(), firsts: Mutex::default(), store: None }
     }
 
     /// The same, and a folder, which is made where there is none. Of its entries the oldest go once they take more bytes in all.
@@ -74,6 +84,38 @@ impl Cache {
         {
             store.write(&key, &bytes);
         }
+    }
+
+    /// The key of a part.
+    pub(super) fn key_of(&self, model: &Arc<Model>) -> Key {
+        let known = |models: &[(Weak<Model>, Key)]| {
+            // An address is not given to another model while this one is held.
+            let same = models.iter().find(|(held, _)| std::ptr::eq(held.as_ptr(), Arc::as_ptr(model)));
+            same.map(|&(_, key)| key)
+        };
+        if let Some(key) = known(&self.models.lock().unwrap_or_else(PoisonError::into_inner)) {
+            return key;
+        }
+        let key = key::of_part(model);
+        let mut models = self.models.lock().unwrap_or_else(PoisonError::into_inner);
+        models.retain(|(held, _)| held.strong_count() > 0);
+        models.push((Arc::downgrade(model), key));
+        key
+    }
+
+    /// The place of what a boolean makes before its seams are blended, by all that this depends on. The last few are kept, whatever
+    /// memory they take, as long as anything is.
+    pub(super) fn first(&self, key: &Key) -> Arc<OnceLock<First>> {
+        let mut firsts = self.firsts.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = firsts.iter().position(|(of, _)| of == key).map(|i| firsts.remove(i));
+        let first = known.unwrap_or_else(|| (*key, Arc::default()));
+        let place = Arc::clone(&first.1);
+        if self.memory().most > 0 {
+            firsts.push(first);
+            let excess = firsts.len().saturating_sub(FIRSTS);
+            firsts.drain(..excess);
+        }
+        place
     }
 
     fn memory(&self) -> std::sync::MutexGuard<'_, Memory> {

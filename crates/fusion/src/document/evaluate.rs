@@ -130,10 +130,11 @@ impl Document {
             if wanted.iter().all(|w| w.2 != precision) {
                 continue;
             }
-            let mut run =
-                Run { document: self, cache, precision, watch, parts: &parts, shapes: BTreeMap::new(), taken: vec![] };
+            let mut run = Run::new(self, cache, precision, watch, &parts);
             run.set_parts(sources)?;
-            run.take_steps(sources)?;
+            for i in 0..self.steps.len() {
+                run.take_step(i, sources)?;
+            }
             for (i, (of, file, _)) in wanted.iter().enumerate().filter(|(_, w)| w.2 == precision) {
                 let outcome = run.finish(of)?;
                 outputs.push((i, Evaluated { of: of.clone(), file: file.clone(), outcome }));
@@ -144,7 +145,7 @@ impl Document {
         Ok(Evaluation { steps: steps.unwrap_or_default(), outputs: outputs.into_iter().map(|o| o.1).collect() })
     }
 
-    fn read_parts(&self, sources: &mut dyn Sources, watch: &Watch) -> Result<Vec<Arc<Model>>, Error> {
+    pub(super) fn read_parts(&self, sources: &mut dyn Sources, watch: &Watch) -> Result<Vec<Arc<Model>>, Error> {
         let read = |part: &super::Part| {
             watch.step("read", 0.0)?;
             let unread = |told: String| super::Error::at(&self.text, part.places.span("mesh"), told);
@@ -168,26 +169,37 @@ impl Document {
 }
 
 /// A document being evaluated for one precision.
-struct Run<'a> {
+pub(super) struct Run<'a> {
     document: &'a Document,
     cache: &'a Cache,
     precision: Precision,
     watch: &'a Watch,
     parts: &'a [Arc<Model>],
-    shapes: BTreeMap<String, Shape>,
-    taken: Vec<Taken>,
+    pub(super) shapes: BTreeMap<String, Shape>,
+    pub(super) taken: Vec<Taken>,
 }
 
-impl Run<'_> {
+impl<'a> Run<'a> {
+    /// Nothing is done yet.
+    pub(super) fn new(
+        document: &'a Document,
+        cache: &'a Cache,
+        precision: Precision,
+        watch: &'a Watch,
+        parts: &'a [Arc<Model>],
+    ) -> Self {
+        Self { document, cache, precision, watch, parts, shapes: BTreeMap::new(), taken: vec![] }
+    }
+
     /// The parts, each where it stands.
-    fn set_parts(&mut self, sources: &mut dyn Sources) -> Result<(), Error> {
+    pub(super) fn set_parts(&mut self, sources: &mut dyn Sources) -> Result<(), Error> {
         for &i in &self.document.order {
             let (part, model) = (&self.document.parts[i], &self.parts[i]);
             let origins = Origins::identity(i as u32, model.mesh.vertex_count(), model.mesh.face_count());
             let shape = Shape {
                 model: Arc::clone(model),
                 origins: Arc::new(origins),
-                key: key::of_part(model),
+                key: self.cache.key_of(model),
                 validity: None,
                 steps: BTreeSet::new(),
             };
@@ -201,26 +213,26 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn take_steps(&mut self, sources: &mut dyn Sources) -> Result<(), Error> {
-        for (i, step) in self.document.steps.iter().enumerate() {
-            if step.is_off {
-                let first = step.of.first().and_then(|name| self.shapes.get(name)).cloned();
-                first.map(|shape| self.shapes.insert(step.name.clone(), shape));
-                continue;
-            }
-            let named = |e: Error| match e {
-                Error::Option(e) => step.places.wrong(&self.document.text, &e).into(),
-                Error::Document(_) | Error::Cancelled(_) => e,
-                e => {
-                    let name = format!("step {}, {} of {}", i + 1, step.action.verb(), step.of.join(", "));
-                    Error::Step { name, source: Box::new(e) }
-                }
-            };
-            let (mut shape, taken) = self.take(&step.action, &step.of, &step.places, sources).map_err(named)?;
-            shape.steps.insert(self.taken.len());
-            self.shapes.insert(step.name.clone(), shape);
-            self.taken.push(Taken { number: i + 1, name: step.name.clone(), ..taken });
+    /// Takes the step with this index, or passes it over where it is off.
+    pub(super) fn take_step(&mut self, i: usize, sources: &mut dyn Sources) -> Result<(), Error> {
+        let Some(step) = self.document.steps.get(i) else { return Ok(()) };
+        if step.is_off {
+            let first = step.of.first().and_then(|name| self.shapes.get(name)).cloned();
+            first.map(|shape| self.shapes.insert(step.name.clone(), shape));
+            return Ok(());
         }
+        let named = |e: Error| match e {
+            Error::Option(e) => step.places.wrong(&self.document.text, &e).into(),
+            Error::Document(_) | Error::Cancelled(_) => e,
+            e => {
+                let name = format!("step {}, {} of {}", i + 1, step.action.verb(), step.of.join(", "));
+                Error::Step { name, source: Box::new(e) }
+            }
+        };
+        let (mut shape, taken) = self.take(&step.action, &step.of, &step.places, sources).map_err(named)?;
+        shape.steps.insert(self.taken.len());
+        self.shapes.insert(step.name.clone(), shape);
+        self.taken.push(Taken { number: i + 1, name: step.name.clone(), ..taken });
         Ok(())
     }
 
@@ -244,7 +256,7 @@ impl Run<'_> {
         let entry = if let Some(entry) = known {
             entry
         } else {
-            let Outcome { model, origins, report } = task.run(self.precision, self.watch)?;
+            let Outcome { model, origins, report } = task.run(self.precision, self.cache, self.watch)?;
             let entry = Arc::new(Entry { model: Arc::new(model), origins, report });
             self.cache.put(key, &entry);
             entry

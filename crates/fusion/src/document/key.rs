@@ -43,6 +43,16 @@ pub(super) fn of_step(
     hash.finalize().into()
 }
 
+/// The key of what a boolean makes of its first two shapes before it blends: in 64 bits, whatever the result must survive.
+pub(super) fn of_first(verb: &str, inputs: &[Key]) -> Key {
+    let mut hash = start("first");
+    put(&mut hash, verb.as_bytes());
+    for key in inputs {
+        hash.update(key);
+    }
+    hash.finalize().into()
+}
+
 fn start(kind: &str) -> blake3::Hasher {
     blake3::Hasher::new_derive_key(&format!("fusion documents, {kind}, 1"))
 }

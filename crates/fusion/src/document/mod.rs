@@ -27,6 +27,7 @@
 //! | `table.rs`, `error.rs` | tables whose keys know their place; what is wrong, by line, column and key |
 //! | `edit.rs` | values set; parts, steps and outputs added |
 //! | `evaluate.rs` | the steps taken in order |
+//! | `shapes.rs` | every shape on the way, for those who look at it |
 //! | `task.rs`, `place.rs` | one step made ready; where a pose takes a shape |
 //! | `shape.rs` | a named shape on its way |
 //! | `sources.rs` | where meshes and files come from |
@@ -49,6 +50,7 @@ mod place;
 mod reference;
 mod schema;
 mod shape;
+mod shapes;
 mod sources;
 mod store;
 mod table;
@@ -61,6 +63,7 @@ pub use evaluate::{Evaluated, Evaluation, Precisions, Taken};
 pub use parts::{Output, Part, Step};
 pub use reference::reference;
 pub use schema::schema;
+pub use shapes::{Shapes, Shown, Stopped};
 pub use sources::{Folder, Given, Sources};
 
 use parts::Named;

@@ -1,17 +1,18 @@
 //! One step made ready: names of shapes replaced by their numbers, files read, the pose resolved. What is left depends on nothing
 //! but its shapes, so equal tasks have equal results.
 
-use super::Error;
 use super::action::Action;
+use super::cache::Cache;
 use super::place::Ground;
 use super::shape::Shape;
 use super::sources::Sources;
 use super::table::Places;
+use super::{Error, key};
 use crate::cluster::cluster;
 use crate::compose::compose;
 use crate::cut::cut;
 use crate::detail::detail;
-use crate::join::join;
+use crate::join::join_from;
 use crate::operation::{Compose, Creases, Detail, Linked, LoopName, OptionError, Pose, Precision, RegionArg, Solid};
 use crate::pose::pose;
 use crate::pose::similarity::Similarity;
@@ -76,8 +77,8 @@ impl Task {
         Ok((self.action.verb(), options, self.motion.as_ref()))
     }
 
-    /// Does it.
-    pub(super) fn run(&self, precision: Precision, watch: &Watch) -> Result<Outcome, crate::Error> {
+    /// Does it. What does not depend on the option that is likely to change next is kept.
+    pub(super) fn run(&self, precision: Precision, cache: &Cache, watch: &Watch) -> Result<Outcome, crate::Error> {
         let models: Vec<Model> = self.inputs.iter().map(|shape| (*shape.model).clone()).collect();
         let Some(first) = models.first() else { return Err(crate::Error::TooFew(0)) };
         let diagonal = models.iter().map(|m| bounds(&m.mesh)).fold(Bounds::EMPTY, Bounds::union).diagonal();
@@ -85,7 +86,11 @@ impl Task {
         match &self.action {
             Action::Pose(_) => Ok(pose(first, &self.motion.unwrap_or(Similarity::IDENTITY))),
             Action::Cut(operation) => cut(first, &operation.params(format)?, watch),
-            Action::Boolean(operation) => join(&models, &operation.params(diagonal, format)?, watch),
+            Action::Boolean(operation) => {
+                let keys: Vec<_> = self.inputs.iter().take(2).map(|shape| shape.key).collect();
+                let first = cache.first(&key::of_first(self.action.verb(), &keys));
+                join_from(&models, &operation.params(diagonal, format)?, &first, watch)
+            }
             Action::Compose(operation) => compose(&models, &operation.numbered(diagonal, format)?, watch),
             Action::Blend(operation) => match operation.sharpened(first, diagonal, format, watch)? {
                 Some(outcome) => Ok(outcome),
