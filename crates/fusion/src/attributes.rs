@@ -1,10 +1,12 @@
 //! Carries texture coordinates, normals, colours, groups and materials from the inputs of a job to its result.
 
-use crate::compose::TRANSITION;
 use crate::spread::spread;
 use glam::{DVec3, DVec4};
 use mesh_core::{CornerMap, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, TriMesh, VertexOrigin};
 use mesh_io::{Groups, Material, Materials, Model};
+
+/// What the surface of a composition is called in origins and groups: its colours are blended from those of the parts.
+pub(crate) const TRANSITION: &str = "transition";
 
 /// `mesh` with the attributes that its origins lead to. O(n).
 ///

@@ -1,6 +1,7 @@
 //! What a job has to tell, as data: a code, a place, numbers, a sentence and a way out. All sentences are made here.
 
-use crate::{Error, blend, choice};
+use crate::choice_refusal::Refusal as ChoiceRefusal;
+use crate::{Error, blend};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -190,8 +191,8 @@ impl Diagnostic {
     }
 }
 
-fn of_choice(refusal: &choice::Refusal, told: impl Fn(Code) -> Diagnostic) -> Diagnostic {
-    use choice::Refusal as R;
+fn of_choice(refusal: &ChoiceRefusal, told: impl Fn(Code) -> Diagnostic) -> Diagnostic {
+    use ChoiceRefusal as R;
     match *refusal {
         R::NoEdges { angle, sharpest } => {
             let told = told(Code::NoEdges).with("angle", angle).with("sharpest", sharpest);

@@ -1,9 +1,15 @@
 //! Why a pipeline gives no result.
 
+use crate::choice_refusal::Refusal as ChoiceRefusal;
+use crate::compose::Error as ComposeError;
+use crate::cut::Error as CutError;
 use crate::document::Error as DocumentError;
-use crate::{Invalid, blend, choice, compose, cut, operation, sharpen};
+use crate::invalid::Invalid;
+use crate::operation::OptionError;
+use crate::sharpen::Refusal as SharpenRefusal;
 use glam::DVec3;
 use mesh_core::{Cancelled, NotManifold};
+use rolling_blend as blend;
 use tri_intersect::EmbedError;
 
 /// Why there is no result.
@@ -11,7 +17,7 @@ use tri_intersect::EmbedError;
 pub enum Error {
     /// An option has a value that it cannot have.
     #[error(transparent)]
-    Option(#[from] operation::OptionError),
+    Option(#[from] OptionError),
     /// Nothing to join.
     #[error("{0} solids given; a join needs two or more")]
     TooFew(usize),
@@ -42,7 +48,7 @@ pub enum Error {
     NoCurve(String, Option<DVec3>),
     /// No curve can be chosen.
     #[error(transparent)]
-    Choice(#[from] choice::Refusal),
+    Choice(#[from] ChoiceRefusal),
     /// A seam could not be blended.
     #[error(transparent)]
     Blend(#[from] blend::Error),
@@ -51,10 +57,10 @@ pub enum Error {
     Seam(#[from] spine::Error),
     /// A rounding cannot be sharpened.
     #[error(transparent)]
-    Sharpen(#[from] sharpen::Refusal),
+    Sharpen(#[from] SharpenRefusal),
     /// The parts could not be composed.
     #[error(transparent)]
-    Compose(#[from] compose::Error),
+    Compose(#[from] ComposeError),
     /// A polyhedron cannot be blended by clusters as asked.
     #[error(transparent)]
     Cluster(#[from] edge_cluster::Error),
@@ -80,7 +86,7 @@ pub enum Error {
     },
     /// A plane cannot cut.
     #[error(transparent)]
-    Cut(#[from] cut::Error),
+    Cut(#[from] CutError),
     /// The result failed its own validation; nothing is returned.
     #[error(transparent)]
     Invalid(#[from] Invalid),

@@ -65,12 +65,12 @@
 //! | `detail.rs` | geometry detail from region to region |
 //! | `document/` | whole models as TOML text, evaluated step by step |
 //! | `pose/` | models moved |
-//! | `extent.rs`, `outcome.rs`, `validity.rs`, `error.rs` | how every pipeline begins and ends |
+//! | `extent.rs`, `outcome.rs`, `validity.rs`, `invalid.rs`, `error.rs` | how every pipeline begins and ends |
 //! | `remeshing.rs`, `region.rs` | remeshing of a surface or a region of it; regions |
 //! | `repair.rs` | welding, orientation, taking apart |
 //! | `info.rs` | counts, measures and defects of one mesh |
 //! | `listing.rs` | feature curves as every door lists them |
-//! | `choice.rs` | which curves are blended |
+//! | `choice.rs`, `choice_refusal.rs` | which curves are blended; why none can be chosen |
 //! | `picks.rs` | curves through picked points |
 //! | `attributes.rs`, `spread.rs` | attributes carried from inputs to the result, colours blended over new surfaces |
 //! | `profile_file.rs` | cross-sections read from files |
@@ -80,6 +80,7 @@
 
 mod attributes;
 pub mod choice;
+mod choice_refusal;
 pub mod cluster;
 pub mod compose;
 pub mod cut;
@@ -90,6 +91,7 @@ mod drawings;
 mod error;
 mod extent;
 mod info;
+mod invalid;
 pub mod join;
 mod listing;
 mod metrics;
@@ -118,6 +120,7 @@ pub use document::Document;
 pub use drawings::drawings_to_files;
 pub use error::Error;
 pub use info::{Defect, Info, Loop};
+pub use invalid::Invalid;
 pub use join::join;
 pub use listing::{ListedCurve, convexity_word, list_curves};
 pub use mesh_core;
@@ -139,4 +142,3 @@ pub use round::round;
 pub use sharpen::sharpen;
 pub use spine::{OffsetParams, Solver};
 pub use tri_intersect::Operation;
-pub use validity::Invalid;

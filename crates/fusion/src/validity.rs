@@ -1,8 +1,9 @@
 //! Whether a result is sound in the coordinates that a file will hold.
 
+use crate::invalid::Invalid;
 use crate::{Error, Validity};
 use glam::DVec3;
-use mesh_core::{Connected, FaceId, FaceOrigin, Faces, NotManifold, Origins, TriMesh, Watch, boundary_loops, validate};
+use mesh_core::{Connected, FaceId, FaceOrigin, Faces, Origins, TriMesh, Watch, boundary_loops, validate};
 use mesh_io::{Format, Model};
 use rayon::prelude::*;
 use tri_intersect::self_intersections_among;
@@ -14,28 +15,6 @@ pub(crate) enum Promise {
     Openings(usize),
     /// Oriented and 2-manifold.
     Manifold,
-}
-
-/// A result that is not sound.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the result is not valid{}: {reason}{}", .format.map_or(String::new(), hint), .at.map_or(String::new(), |p| format!(" near {p}")))]
-pub struct Invalid {
-    /// What is wrong.
-    pub reason: String,
-    /// A place, in model units.
-    pub at: Option<DVec3>,
-    /// The format whose rounding broke it, if that was the reason.
-    pub format: Option<Format>,
-}
-
-fn hint(format: Format) -> String {
-    format!(" in the 32-bit coordinates of {format} (write obj, ply or off, or move the model to the origin)")
-}
-
-impl From<NotManifold> for Invalid {
-    fn from(source: NotManifold) -> Self {
-        Self { at: source.place, reason: source.to_string(), format: None }
-    }
 }
 
 /// Checks a result as `format` will hold it: finite, oriented, 2-manifold, closed where promised, and no changed face meeting another.

@@ -23,8 +23,8 @@ mod weld;
 
 pub use error::Error;
 pub use silhouette::{Silhouette, SilhouetteCurve, SilhouettePoint};
-pub(crate) use weld::TRANSITION;
 
+use crate::attributes::TRANSITION;
 use crate::outcome::{Outcome, finish_as};
 use crate::validity::Promise;
 use crate::{Counts, Report, extent};

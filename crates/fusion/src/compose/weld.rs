@@ -3,15 +3,13 @@
 use super::Error;
 use super::openings::Opening;
 use crate::Report;
+use crate::attributes::TRANSITION;
 use lmc_tessellate::Transition;
 use mesh_core::{
     Adjacency, Connected, FaceId, FaceOrigin, Faces, Origins, TriMesh, VertexId, VertexOrigin, Watch, components,
 };
 use std::collections::BTreeSet;
 use tri_intersect::self_intersections_among;
-
-/// What the surface is called in origins and groups.
-pub(crate) const TRANSITION: &str = "transition";
 
 /// The composed mesh.
 pub(super) struct Welded {

@@ -8,7 +8,7 @@ use super::options::Options;
 use super::region::RegionArg;
 use super::region_of::{Curve, RegionOf};
 use crate::Region;
-use crate::compose::TRANSITION;
+use crate::attributes::TRANSITION;
 use crate::detail::Params;
 use detail_transfer::{FanLength, Ribbon};
 use mesh_io::Format;
