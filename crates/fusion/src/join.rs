@@ -48,15 +48,17 @@ impl SeamChoice {
 /// # Errors
 /// [`Error`]; a radius that does not fit comes with a place and a radius that does.
 pub fn join(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcome, Error> {
-    join_from(parts, params, &OnceLock::new(), watch)
+    // The boolean is looked at again only where its blend does not survive rounding.
+    let first = OnceLock::new();
+    join_from(parts, params, params.blend.is_some().then_some(&first), watch)
 }
 
-/// The same, with the first two parts as they were joined before, or kept for the next time: that depends on them and the operation
-/// alone, and not on the radius.
+/// The same, with the first two parts as they were joined before, or kept for the next time where there is a place for that: it depends
+/// on them and the operation alone, and not on the radius.
 pub(crate) fn join_from(
     parts: &[Model],
     params: &Params,
-    first: &OnceLock<First>,
+    first: Option<&OnceLock<First>>,
     watch: &Watch,
 ) -> Result<Outcome, Error> {
     if params.blend.is_some() {
@@ -69,14 +71,17 @@ fn overlay_all(
     parts: &[Model],
     params: &Params,
     blend: Option<&blend::Params>,
-    first: &OnceLock<First>,
+    known: Option<&OnceLock<First>>,
     watch: &Watch,
 ) -> Result<Outcome, Error> {
     let faces: Vec<&dyn Faces> = parts.iter().map(|m| &m.mesh as &dyn Faces).collect();
     let mut report = Report::new("join", parts.iter().map(|m| Counts::of("", &m.mesh)).collect());
-    let first = joined_first(parts, params, first, &mut report, watch)?;
-    let taken =
-        if blend.is_some() && !params.seams.is_all() { Some(choose_seams(parts, params, first, watch)?) } else { None };
+    let first = joined_first(parts, params, known, &mut report, watch)?;
+    let taken = if blend.is_some() && !params.seams.is_all() {
+        Some(choose_seams(parts, params, &first, watch)?)
+    } else {
+        None
+    };
     // Seams that come out otherwise beside a blended one are all taken.
     let chosen = |id: usize| taken.as_ref().is_none_or(|t| t.ids.get(&id).copied().unwrap_or(id >= t.count));
     let blended = |whole: Solid, numbers: Range<usize>, curves: Vec<BlendCurve>, report: &mut Report| {
@@ -85,7 +90,7 @@ fn overlay_all(
         if curves.is_empty() { Ok(whole) } else { round(&whole, ids, curves, blend, &faces, report, watch) }
     };
     let mut count = first.curves.len();
-    let mut whole = blended(first.whole.clone(), 0..count, first.curves.clone(), &mut report)?;
+    let mut whole = blended(first.whole, 0..count, first.curves, &mut report)?;
     let rest = report.time("connect", || connect(parts, 2))?;
     for (part, solid) in (2..).zip(rest) {
         let cut = overlay(&whole, &solid, Some(part), params, &mut report, watch)?;
@@ -105,7 +110,7 @@ fn overlay_all(
 }
 
 /// The first two parts joined, before their seams are blended.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct First {
     whole: Solid,
     curves: Vec<BlendCurve>,
@@ -114,17 +119,17 @@ pub(crate) struct First {
 }
 
 /// What is known of the first two parts, or made now; the report tells the same.
-fn joined_first<'a>(
+fn joined_first(
     parts: &[Model],
     params: &Params,
-    known: &'a OnceLock<First>,
+    known: Option<&OnceLock<First>>,
     report: &mut Report,
     watch: &Watch,
-) -> Result<&'a First, Error> {
-    if let Some(first) = known.get() {
+) -> Result<First, Error> {
+    if let Some(first) = known.and_then(OnceLock::get) {
         *report.figures.entry("seams".into()).or_default() += first.curves.len() as f64;
         first.told.iter().for_each(|told| report.tell(told.clone()));
-        return Ok(first);
+        return Ok(first.clone());
     }
     let two = parts.get(..2).ok_or(Error::TooFew(parts.len()))?;
     let mut solids = report.time("connect", || connect(two, 0))?.into_iter();
@@ -136,7 +141,12 @@ fn joined_first<'a>(
     let origins = cut.origins.compose(&[one.stage(), other.stage()], &faces);
     let whole = Solid::new(cut.mesh, origins)?;
     let curves = curves(&whole, &cut.seams)?;
-    Ok(known.get_or_init(|| First { whole, curves, told }))
+    let first = First { whole, curves, told };
+    if let Some(known) = known {
+        // Another thread may have been faster, with the same.
+        let _ = known.set(first.clone());
+    }
+    Ok(first)
 }
 
 fn curves(whole: &Solid, seams: &[tri_intersect::Seam]) -> Result<Vec<BlendCurve>, Error> {
@@ -209,13 +219,12 @@ fn choose_seams(parts: &[Model], params: &Params, first: &First, watch: &Watch) 
 /// As [`join`]; [`Error::Blend`] if no radius works or there is no seam.
 pub fn max_radius(parts: &[Model], params: &Params, watch: &Watch) -> Result<Limit, Error> {
     extent::check(parts)?;
-    let known = OnceLock::new();
-    let first = joined_first(parts, params, &known, &mut Report::default(), watch)?;
-    let taken = choose_seams(parts, params, first, watch)?;
+    let first = joined_first(parts, params, None, &mut Report::default(), watch)?;
+    let taken = choose_seams(parts, params, &first, watch)?;
     let how = params.blend.clone().unwrap_or_else(|| blend::Params::new(1.0));
     let mut least: Option<Limit> = None;
     let mut count = 0;
-    plain_steps(parts, params, first, watch, |whole, curves| {
+    plain_steps(parts, params, &first, watch, |whole, curves| {
         let numbers = count..count + curves.len();
         count = numbers.end;
         let chosen = numbers.zip(curves).filter(|(id, _)| taken.ids.get(id) == Some(&true));

@@ -89,7 +89,7 @@ impl Task {
             Action::Boolean(operation) => {
                 let keys: Vec<_> = self.inputs.iter().take(2).map(|shape| shape.key).collect();
                 let first = cache.first(&key::of_first(self.action.verb(), &keys));
-                join_from(&models, &operation.params(diagonal, format)?, &first, watch)
+                join_from(&models, &operation.params(diagonal, format)?, Some(&first), watch)
             }
             Action::Compose(operation) => compose(&models, &operation.numbered(diagonal, format)?, watch),
             Action::Blend(operation) => match operation.sharpened(first, diagonal, format, watch)? {
