@@ -51,7 +51,7 @@ fn has_ray(python: &Path) -> Result<bool, Fault> {
     }
     let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "ray[data]"];
     let installed = Command::new(python).args(pip).status()?.success() && there();
-    if installed { Ok(true) } else { Err(format!("Ray cannot be installed, and {INSISTS} asks for it").into()) }
+    if installed { Ok(true) } else { absent("ray", "Ray cannot be installed").map(|()| false) }
 }
 
 /// A Python that is recent enough.

@@ -25,15 +25,11 @@ function event(event: ServerEvent, store: Store) {
       store.document = event;
       store.selection = store.selection.filter((row) => exists(row, store));
       store.changed('document', 'selection');
+      // Work that does not tell how far it is can be seen and stopped, too.
+      setTimeout(() => isAwaited(event.version, store) && !store.work && working(store, 'working', null), 300);
       break;
     case 'progress':
-      if (store.workSince === undefined) {
-        store.workSince = performance.now();
-        // What is seen is marked as old once that takes long.
-        setTimeout(() => store.work && store.changed('work'), 700);
-      }
-      store.work = { stage: event.stage, fraction: event.fraction };
-      store.changed('work');
+      working(store, event.stage, event.fraction);
       break;
     case 'evaluated':
       store.evaluated = event;
@@ -59,6 +55,22 @@ function event(event: ServerEvent, store: Store) {
       store.say(`A document that was not saved was found in ${event.path}; open it to go on.`);
       break;
   }
+}
+
+/** Whether a document is the newest one, and nothing has come of it yet. */
+function isAwaited(version: number, store: Store): boolean {
+  const latest = Math.max(store.evaluated?.version ?? -1, store.failedVersion ?? -1);
+  return store.document?.version === version && latest < version;
+}
+
+function working(store: Store, stage: string, fraction: number | null) {
+  if (store.workSince === undefined) {
+    store.workSince = performance.now();
+    // What is seen is marked as old once that takes long.
+    setTimeout(() => store.work && store.changed('work'), 700);
+  }
+  store.work = { stage, fraction };
+  store.changed('work');
 }
 
 function ended(store: Store) {
