@@ -98,9 +98,9 @@ round.report["figures"]["patches"]
 const REMESH: &str = r#"even = fm.remesh(fm.sphere(1.0), edge_length=0.2)
 even.report["validity"]["closed"]
 True"#;
-const POSE: &str = r#"moved = fm.pose(fm.box((1, 1, 1)), rotate=((0, 0, 1), 45), translate=(0, 0, 2))
+const POSE: &str = r"moved = fm.pose(fm.box((1, 1, 1)), rotate=((0, 0, 1), 45), translate=(0, 0, 2))
 round(float(moved.vertices[:, 0].max()), 9)
-0.707106781"#;
+0.707106781";
 
 /// Options that a reader looks for first, in this order; the others follow in order of their names.
 const FIRST: [&str; 11] =
@@ -252,7 +252,7 @@ const PRECISION: &str = r#"    precision : f64 or f32, default f64
         The coordinates in which the result must be sound: ``"f32"`` for one that goes into STL or glTF.
 "#;
 
-const COMMON: &str = r#"    threads : int, optional
+const COMMON: &str = r"    threads : int, optional
         Number of threads; all processors where not given. The result has the same bits for any number.
     progress : callable or bool, optional
         Called with a stage's name and the share of it that is done; ends the job by an exception or by returning ``False``.
@@ -277,7 +277,7 @@ const COMMON: &str = r#"    threads : int, optional
     Examples
     --------
     >>> import fusion_mesh as fm
-"#;
+";
 
 /// A sentence in lines, indented as a parameter's meaning.
 fn wrap(sentence: &str, text: &mut String) -> std::fmt::Result {
