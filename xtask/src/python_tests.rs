@@ -12,7 +12,7 @@ use std::time::Duration;
 /// What the tests need besides NumPy; only pytest must be there.
 const PACKAGES: [&str; 6] = ["numpy", "pytest", "trimesh", "pyvista", "mypy", "pyright"];
 /// The tests are ended, as failed, after this long.
-const LIMIT: Duration = Duration::from_secs(360);
+const LIMIT: Duration = Duration::from_secs(600);
 
 /// Jobs of the test on a Ray cluster: enough for a node to die among them, few enough for half a minute.
 const JOBS: &str = "60";

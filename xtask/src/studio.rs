@@ -14,7 +14,7 @@ const BROWSERS: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "g
 /// The oldest Node.js that vite runs on.
 const OLDEST_NODE: u32 = 20;
 /// The scenarios are stopped after this long.
-const TIME_LIMIT: Duration = Duration::from_secs(330);
+const TIME_LIMIT: Duration = Duration::from_secs(600);
 
 /// Installs what the page needs, at the versions of its lock file, and bundles it into `target/studio`.
 pub fn build() -> Result<(), Fault> {
