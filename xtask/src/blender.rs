@@ -32,7 +32,7 @@ pub fn run(options: &Options) -> Result<(), Fault> {
     if options.test {
         return test();
     }
-    blender_options::write()?;
+    blender_options::OPTIONS.write()?;
     pack(options)
 }
 

@@ -1,13 +1,12 @@
 //! The options of all operations that a Blender property can hold, from the one definition.
 
-use crate::{Fault, root};
+use crate::Fault;
+use crate::generated::Generated;
 use fusion::operation::schema;
 use serde_json::{Map, Value, json};
-use std::fs;
-use std::path::PathBuf;
 
-/// Where they stand.
-const FILE: &str = "crates/fusion-python/blender/options.json";
+/// The generated file.
+pub const OPTIONS: Generated = Generated { file: "crates/fusion-python/blender/options.json", chore: "blender", text };
 
 /// The operations that the extension offers.
 const OPERATIONS: [&str; 8] = ["blend", "boolean", "cluster", "compose", "cut", "detail", "remesh", "sharpen"];
@@ -17,27 +16,6 @@ const FIRST: [&str; 6] = ["radius", "edge_length", "profile", "angle", "overlap"
 
 /// How far inside an open end of a range the least and the largest value lie.
 const INSIDE: f64 = 1e-4;
-
-/// Writes the options.
-pub fn write() -> Result<(), Fault> {
-    Ok(fs::write(file(), text()?)?)
-}
-
-/// Whether the options are those of the definitions.
-pub fn is_current() -> Result<bool, Fault> {
-    let written = fs::read_to_string(file()).unwrap_or_default();
-    // Git may have turned the ends of lines into those of the system.
-    Ok(written.replace('\r', "") == text()?)
-}
-
-/// The file, for messages.
-pub fn name() -> &'static str {
-    FILE
-}
-
-fn file() -> PathBuf {
-    root().join(FILE)
-}
 
 fn text() -> Result<String, Fault> {
     let schema = schema();

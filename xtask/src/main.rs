@@ -7,7 +7,7 @@
 //! | `fixtures.rs`, `models.rs` | the parts of all cases and documents as files |
 //! | `collect.rs` | real models from where they come from |
 //! | `bench.rs` | benchmarks into a page |
-//! | `pages.rs` | what stands between marks on a page |
+//! | `pages.rs`, `generated.rs` | parts of pages, and whole files, that are generated |
 //! | `python.rs`, `python_types.rs` | the Python functions of all operations |
 //! | `doors.rs` | what the tests of all doors share |
 //! | `python_tests.rs` | the Python module, built and tested |
@@ -24,6 +24,7 @@ mod circles;
 mod collect;
 mod doors;
 mod fixtures;
+mod generated;
 mod models;
 mod pages;
 mod python;
@@ -79,7 +80,7 @@ fn main() -> ExitCode {
         Chore::Blender(options) => blender::run(&options),
         Chore::Fixtures(options) => fixtures::run(&options),
         Chore::Models(options) => collect::run(&options),
-        Chore::Python => python::write(),
+        Chore::Python => python::FUNCTIONS.write(),
         Chore::Reference => pages::DOCUMENTS.renew(&fusion::document::reference()),
         Chore::Regress(options) => regress::run(&options),
         Chore::Studio => studio::build(),

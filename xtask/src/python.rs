@@ -1,17 +1,17 @@
 //! The Python functions of all operations: signatures, types and docstrings from the one definition.
 
+use crate::Fault;
+use crate::generated::Generated;
 use crate::python_types::{default, hint};
-use crate::{Fault, root};
 use fusion::operation::{
     Blend, Boolean, Cluster, Compose, Cut, Detail, OptionRow, Options, Pose, Remesh, Sharpen, option_rows, schema,
 };
 use serde_json::Value;
 use std::fmt::Write;
-use std::fs;
-use std::path::PathBuf;
 
-/// Where the functions stand.
-const FILE: &str = "crates/fusion-python/python/fusion_mesh/_operations.py";
+/// The generated file.
+pub const FUNCTIONS: Generated =
+    Generated { file: "crates/fusion-python/python/fusion_mesh/_operations.py", chore: "python", text };
 
 /// What a function takes beside options.
 #[derive(Clone, Copy, PartialEq)]
@@ -105,27 +105,6 @@ round(float(moved.vertices[:, 0].max()), 9)
 /// Options that a reader looks for first, in this order; the others follow in order of their names.
 const FIRST: [&str; 11] =
     ["radius", "edge_length", "near", "plane", "path", "target", "source", "profile", "scale", "rotate", "translate"];
-
-/// Writes the functions.
-pub fn write() -> Result<(), Fault> {
-    Ok(fs::write(file(), text()?)?)
-}
-
-/// Whether the functions are those of the definitions.
-pub fn is_current() -> Result<bool, Fault> {
-    let written = fs::read_to_string(file()).unwrap_or_default();
-    // Git may have turned the ends of lines into those of the system.
-    Ok(written.replace('\r', "") == text()?)
-}
-
-/// The file, for messages.
-pub fn name() -> &'static str {
-    FILE
-}
-
-fn file() -> PathBuf {
-    root().join(FILE)
-}
 
 fn text() -> Result<String, Fault> {
     let schema = schema();

@@ -46,12 +46,10 @@ pub fn run() -> Result<(), Fault> {
         faults
             .push(format!("{}: its keys are not those of the code; run cargo xtask reference", pages::DOCUMENTS.page));
     }
-    if !python::is_current()? {
-        faults.push(format!("{}: is not what the operations say; run cargo xtask python", python::name()));
-    }
-    if !blender_options::is_current()? {
-        let name = blender_options::name();
-        faults.push(format!("{name}: is not what the operations say; run cargo xtask blender"));
+    for generated in [python::FUNCTIONS, blender_options::OPTIONS] {
+        if !generated.is_current()? {
+            faults.push(format!("{}: out of date; run cargo xtask {}", generated.file, generated.chore));
+        }
     }
     for fault in &faults {
         println!("tidy: {fault}");

@@ -4,7 +4,7 @@ import numpy as np
 
 
 def marked(surface, name):
-    """Whether each edge of a surface is marked; None where there is no such mark."""
+    """Whether each edge of a surface is marked; None if the surface has no layer of that name."""
     if name == "SELECTED":
         return surface.selected_edges
     layer = next((x for x in surface.layers if x.domain == "EDGE" and x.name == name), None)

@@ -68,15 +68,13 @@ fn document_with_value(py: Python<'_>, text: &str, name: &str, value: &Bound<'_,
 }
 
 /// Evaluates a document: its steps, and its outputs, each with mesh, report and origins. The names of `meshes` are the paths
-/// that stand for them.
+/// that stand for them; other paths are relative to the folder.
 #[pyfunction]
-#[pyo3(signature = (text, folder, meshes, cache, precision=None, threads=None, progress=None))]
-#[allow(clippy::too_many_arguments)]
+#[pyo3(signature = (text, sources, cache, precision=None, threads=None, progress=None))]
 fn document_evaluate<'py>(
     py: Python<'py>,
     text: String,
-    folder: PathBuf,
-    meshes: Vec<Part<'py>>,
+    sources: (PathBuf, Vec<Part<'py>>),
     cache: PyRef<'py, Cache>,
     precision: Option<&str>,
     threads: Option<usize>,
@@ -84,6 +82,7 @@ fn document_evaluate<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let wrong = |e: String| Fault::BadOption(format!("precision: {e}")).raise(py);
     let precision: Option<Precision> = precision.map(|p| p.parse().map_err(wrong)).transpose()?;
+    let (folder, meshes) = sources;
     let models = meshes.iter().map(|(path, mesh)| Ok((path.into(), Arc::new(model_from(mesh, path)?))));
     let beside = Beside { folder, meshes: models.collect::<PyResult<_>>()? };
     let cache = Arc::clone(&cache.0);

@@ -28,7 +28,7 @@ pub fn serve(path: &str) -> Response<Body> {
     match Bundle::get(path) {
         Some(file) => respond(StatusCode::OK, kind(path), file.data.into_owned()),
         None if path == "index.html" => respond(StatusCode::OK, "text/html; charset=utf-8", UNBUILT.into()),
-        None => respond(StatusCode::NOT_FOUND, "text/plain; charset=utf-8", b"there is no such file".to_vec()),
+        None => respond(StatusCode::NOT_FOUND, "text/plain; charset=utf-8", b"file not found".to_vec()),
     }
 }
 

@@ -7,12 +7,11 @@ use crate::refusal::Refusal;
 use crate::scene::Scene;
 use crate::sources::Rooted;
 use crate::studio::Studio;
+use fusion::blend::BlendCurve;
 use fusion::choice::seam_curves;
 use fusion::document::{Action, Shapes, Shown, Step};
 use fusion::features::{Convexity, FeatureCurve, Params, feature_curves};
-use fusion::mesh_core::{
-    Adjacency, Connected, FaceOrigin, Faces, HalfedgeId, Origins, Positions, TriMesh, Watch, triangle_normal,
-};
+use fusion::mesh_core::{Adjacency, Connected, FaceOrigin, HalfedgeId, Origins, TriMesh, Watch, dihedral_angle};
 use fusion::{Document, ListedCurve, list_curves};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -81,7 +80,7 @@ pub fn of_action(
             let shown = sharp(studio, scene, index, watch)?;
             let mesh = connected(&shown)?;
             let curves = match seam_curves(&mesh, &sides(&shown.origins, &before, step)) {
-                Ok(curves) => curves.into_iter().map(|curve| measured(&mesh, curve.halfedges, curve.closed)).collect(),
+                Ok(curves) => curves.into_iter().map(|curve| measured(&mesh, curve)).collect(),
                 Err(fusion::Error::Choice(_)) => vec![],
                 Err(error) => return Err(error.into()),
             };
@@ -154,21 +153,19 @@ fn part(face: &FaceOrigin) -> Option<u32> {
     }
 }
 
-/// A curve with its length and angles; convex where most of it is.
-fn measured(mesh: &Connected<TriMesh>, halfedges: Vec<HalfedgeId>, closed: bool) -> FeatureCurve {
-    let turn = |&h: &HalfedgeId| {
-        let twin = mesh.twin(h)?;
-        let [own, other] = [h, twin].map(|h| triangle_normal(mesh.triangle(h.face())));
-        let along = mesh.position(mesh.head(h)) - mesh.position(mesh.tail(h));
-        let cross = own.cross(other);
-        Some(cross.length().atan2(own.dot(other)).to_degrees().copysign(cross.dot(along)))
-    };
-    let turns: Vec<f64> = halfedges.iter().filter_map(turn).collect();
-    let convex = 2 * turns.iter().filter(|turn| **turn > 0.0).count() > turns.len();
-    let angles = turns.iter().fold([f64::INFINITY, 0.0f64], |[low, high], t| [low.min(t.abs()), high.max(t.abs())]);
-    let length = halfedges.iter().map(|&h| mesh.edge_length(h)).sum();
-    let convexity = if convex { Convexity::Convex } else { Convexity::Concave };
-    FeatureCurve { halfedges, closed, convexity, length, angles: [angles[0].min(angles[1]), angles[1]] }
+/// A seam with its length and dihedral angles, convex where most of its edges are.
+fn measured(mesh: &Connected<TriMesh>, curve: BlendCurve) -> FeatureCurve {
+    let angles: Vec<f64> = curve.halfedges.iter().filter_map(|&h| dihedral_angle(mesh, h)).collect();
+    let convex = 2 * angles.iter().filter(|a| **a > 0.0).count() > angles.len();
+    let sizes = angles.iter().map(|a| a.abs().to_degrees());
+    let [low, high] = sizes.fold([f64::INFINITY, 0.0f64], |[low, high], a| [low.min(a), high.max(a)]);
+    FeatureCurve {
+        convexity: if convex { Convexity::Convex } else { Convexity::Concave },
+        length: curve.length(mesh),
+        angles: [low.min(high), high],
+        halfedges: curve.halfedges,
+        closed: curve.closed,
+    }
 }
 
 /// Whether most of its edges lie between faces of two parts.

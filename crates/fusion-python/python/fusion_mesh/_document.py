@@ -219,7 +219,7 @@ class Document:
         Raises
         ------
         UsageError
-            There is no such parameter or step, or the option cannot have that value. The document is as before then.
+            The parameter or step does not exist, or the value is out of range; the document is unchanged.
         """
         self._replace(_native.document_with_value(self._text, name, value))
 
@@ -280,7 +280,7 @@ class Document:
         Raises
         ------
         UsageError
-            There is no such shape, operation or option, or an option cannot have that value. The document is as before then.
+            The shape, operation or option does not exist, or a value is out of range; the document is unchanged.
         """
         table: Dict[str, Any] = {"do": do}
         if of is not None:
@@ -340,7 +340,7 @@ class Document:
         meshes = [(path, as_mesh(mesh, path)) for path, mesh in self._meshes.items()]
         try:
             made = _native.document_evaluate(
-                self._text, self.folder, meshes, cache._native, precision, count(threads), heard
+                self._text, (self.folder, meshes), cache._native, precision, count(threads), heard
             )
         finally:
             if isinstance(heard, Bar):

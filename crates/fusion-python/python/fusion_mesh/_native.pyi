@@ -76,8 +76,7 @@ def document_with_parameter(text: str, name: str, value: Any) -> str: ...
 def document_with_value(text: str, name: str, value: Any) -> str: ...
 def document_evaluate(
     text: str,
-    folder: str,
-    meshes: Sequence[Tuple[str, Mesh]],
+    sources: Tuple[str, Sequence[Tuple[str, Mesh]]],
     cache: Cache,
     precision: Optional[str] = None,
     threads: Optional[int] = None,

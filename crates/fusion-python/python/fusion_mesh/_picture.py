@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Dict, List, Optional
+from typing import Any, Dict, List, Optional
 
 from . import _native
-
-if TYPE_CHECKING:
-    from ._mesh import Mesh
 
 
 def view_of(
@@ -32,6 +29,6 @@ def view_of(
     }
 
 
-def thumbnail(mesh: "Mesh", color: str = "plain", parts: Optional[List[int]] = None) -> bytes:
-    """A PNG for a notebook, 480 pixels wide and high."""
+def thumbnail(mesh: Any, color: str = "plain", parts: Optional[List[int]] = None) -> bytes:
+    """A PNG of a `Mesh` for a notebook, 480 pixels wide and high."""
     return _native.render(("mesh", mesh), view_of(color=color, parts=parts, size=[480, 480]), None, None)

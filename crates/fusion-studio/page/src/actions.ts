@@ -25,7 +25,7 @@ export class Actions {
     }
   }
 
-  /** The same, for questions that the page asks by itself: a refusal is no news. */
+  /** Ask in the background: errors are not shown. */
   async quietly<T = Json>(what: string, keys: object = {}): Promise<T | undefined> {
     try {
       return await this.server.ask<T>(what, keys);

@@ -1,4 +1,4 @@
-// Clicks of places on the model for an option: each becomes an exact point, asked of the server.
+// Point options set by clicking on the model; the server returns the exact coordinates of each click.
 
 import { Vector3 } from 'three';
 import type { Actions } from './actions';
