@@ -199,6 +199,6 @@ def test_progress_ends_an_evaluation(filleted):
         return False
 
     with pytest.raises(KeyboardInterrupt):
-        fm.union(fm.sphere(1, segments=300), fm.sphere(1, (0.5, 0, 0), segments=300), radius=0.05, progress=stop)
+        fm.union(fm.sphere(1, segments=300), fm.sphere(0.9, (0.5, 0.1, 0.07), segments=300), radius=0.05, progress=stop)
     with pytest.raises(TypeError, match="progress"):
         filleted.evaluate(progress=3)

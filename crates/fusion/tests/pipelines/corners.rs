@@ -3,7 +3,7 @@
 use fusion::blend::{Blended, Method, Overlap, Params, blend, max_radius};
 use fusion::features::{self, feature_curves};
 use fusion::{Choice, round};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use mesh_core::{Connected, Faces, Positions, TriMesh, VertexId, VertexOrigin, Watch, shapes, volume};
 use mesh_io::{Format, Model};
 use spine::BlendCurve;
@@ -326,4 +326,43 @@ fn where_no_ball_fits_a_smaller_one_is_told() {
         assert!(volume(&done.mesh) < 0.99, "nothing is blended with radius {r}");
         assert!(done.shrunk.iter().any(|s| s.1 < 0.5) && done.full_share == 0.0, "radius {r}: {:?}", done.shrunk);
     }
+}
+
+fn difference(mesh: &Connected<TriMesh>, tool: TriMesh) -> Connected<TriMesh> {
+    let (tool, params) = (Connected::new(tool).unwrap(), tri_intersect::Params::default());
+    let made = tri_intersect::boolean(mesh, &tool, Operation::Difference, &params, &Watch::default());
+    Connected::new(made.unwrap().mesh).unwrap()
+}
+
+/// A hole that leaves a wall a little thinner than the ball: the wall stays, and the smaller ball or the sharp edge is told.
+#[test]
+fn a_wall_thinner_than_the_ball_is_not_cut_away() {
+    let plate = Connected::new(shapes::cuboid(DVec3::new(30.0, 14.0, 5.0))).unwrap();
+    let mesh = difference(&plate, shapes::cylinder(5.0, 20.0, 48, 1));
+    let done = blend(&mesh, &curves(&mesh), &Params::new(1.06), &Watch::default()).unwrap();
+    assert!(tri_intersect::self_intersections(&done.mesh, &Watch::default()).unwrap().is_empty());
+    assert!(!done.shrunk.is_empty() || done.curves.iter().any(|c| c.left_sharp.is_some()));
+    assert!(done.curves.iter().filter(|c| c.radius > 0.0).count() > 6, "{:?}", done.curves);
+    let tree = mesh_query::TriBvh::build(&done.mesh).unwrap();
+    for x in [-1.0, -0.5, -0.1, 0.0, 0.3, 0.7] {
+        let from = DVec3::new(x, 10.0, 0.0);
+        let outside = tree.ray_cast(&done.mesh, from, -DVec3::Y, 20.0).unwrap().t;
+        let inside = tree.ray_cast(&done.mesh, from - (outside + 1e-6) * DVec3::Y, -DVec3::Y, 20.0).unwrap().t;
+        assert!(inside > 1.95, "the wall is {inside} thick at {x}");
+    }
+}
+
+/// A slot in a shaft: its valleys end at facets of the shaft, which go on up to the ball.
+#[test]
+fn valleys_end_flush_with_a_faceted_cylinder() {
+    let shaft = Connected::new(shapes::cylinder(5.0, 60.0, 48, 1)).unwrap();
+    let slot = shapes::posed(shapes::cuboid(DVec3::new(3.0, 7.0, 11.0)), DQuat::IDENTITY, DVec3::new(0.0, 6.5, 0.0));
+    let mesh = difference(&shaft, slot);
+    let done = blend(&mesh, &curves(&mesh), &Params::new(0.96), &Watch::default()).unwrap();
+    assert!(tri_intersect::self_intersections(&done.mesh, &Watch::default()).unwrap().is_empty());
+    assert!(done.curves.iter().all(|c| c.radius == 0.96 && c.left_sharp.is_none()), "{:?}", done.curves);
+    let connected = Connected::new(&done.mesh).unwrap();
+    let turn = connected.halfedge_ids().filter_map(|h| mesh_core::dihedral_angle(&connected, h));
+    let sharpest = turn.map(f64::abs).fold(0.0, f64::max).to_degrees();
+    assert!(sharpest < 40.0, "{sharpest}");
 }

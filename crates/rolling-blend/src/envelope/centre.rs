@@ -75,11 +75,10 @@ impl Ground<'_> {
         self.centre_behind(x, r, face, vec![], |_| true)
     }
 
-    /// The centre nearest to `x` in the plane through it, with no contact to the facet of `end` that lies in this plane.
-    pub fn centre_in_plane(&self, x: DVec3, r: f64, face: FaceId, end: FaceId) -> Option<DVec3> {
-        let normal = self.sign * self.patches.face_normal(end);
+    /// The centre nearest to `x` in the plane across `normal` through it, with no contact to facets that lie `ahead` there.
+    pub fn centre_in_plane(&self, x: DVec3, r: f64, face: FaceId, normal: DVec3, ahead: &[u32]) -> Option<DVec3> {
         let stops = [normal, -normal].map(|n| Plane { face: None, foot: x - r * n, normal: n });
-        self.centre_behind(x, r, face, stops.into(), |f| self.patches.facet(f) != self.patches.facet(end))
+        self.centre_behind(x, r, face, stops.into(), |f| !ahead.contains(&self.patches.facet(f)))
     }
 
     /// The nearest centre beyond some planes, of those that keep away from the faces that count.

@@ -31,7 +31,7 @@ pub(super) fn draw(
     watch: &Watch,
 ) -> Result<TriMesh, Trouble> {
     let mut mesh = piece.mesh.clone();
-    flip_needles(&mut mesh);
+    flip_needles(&mut mesh, 0.0, |_| false);
     let most = WIDEST * area(&piece.mesh);
     for (rounds, reach) in PASSES {
         mesh = even_out(mesh, edge, Evenness { rounds, slope: 0.5, finest: 0.5 }, watch)?;

@@ -1,5 +1,6 @@
 //! Where the envelope ends at a face that goes on, as a fillet between two walls does at the end of these: the face is continued
-//! in its plane up to the ball, as CAD kernels do, and no ball comes from beyond it.
+//! in its plane up to the ball, as CAD kernels do, and no ball comes from beyond it. Facets of a curved face are continued
+//! each in its own.
 
 use super::centre::{Ground, Stop};
 use super::fences::Row;
@@ -17,10 +18,10 @@ const MOVED: f64 = 1e-6;
 /// An area, as a share of the radius squared, that is none.
 const NO_AREA: f64 = 1e-9;
 
-/// A stretch of the boundary of a plane face, and the ball in its plane.
+/// A stretch of the boundary of a smooth face, with the ball in its planes, and a stop for each of these.
 pub(super) struct Flush {
     pub row: Row,
-    pub stop: Stop,
+    pub stops: Vec<Stop>,
 }
 
 /// One edge of an outline that runs along a wall.
@@ -31,7 +32,7 @@ struct OnWall {
     under: FaceId,
 }
 
-/// The stretches of the outlines that run along edges of the other convexity, with one plane face beyond. `chosen` are the
+/// The stretches of the outlines that run along edges of the other convexity, with one smooth face beyond. `chosen` are the
 /// halfedges of the curves that are blended. Stretches that cannot be continued are left out.
 pub(super) fn flush(
     ground: &Ground<'_>,
@@ -46,12 +47,12 @@ pub(super) fn flush(
         let n = curve.len();
         let on_wall: Vec<Option<OnWall>> =
             (0..n).map(|k| on_wall(ground, chosen, cut, removed, embedded, [curve[k], curve[(k + 1) % n]])).collect();
-        let facet = |k: usize| on_wall[k % n].map(|w| ground.patches.facet(w.end));
-        let Some(first) = (0..n).find(|&k| facet(k) != facet(k + n - 1)) else { continue };
+        let patch = |k: usize| on_wall[k % n].map(|w| ground.patches.of(w.end));
+        let Some(first) = (0..n).find(|&k| patch(k) != patch(k + n - 1)) else { continue };
         let mut k = first;
         while k < first + n {
-            let length = (0..first + n - k).take_while(|i| facet(k + i) == facet(k)).count();
-            if facet(k).is_some() && length > 1 {
+            let length = (0..first + n - k).take_while(|i| patch(k + i) == patch(k)).count();
+            if patch(k).is_some() && length > 1 {
                 let chain: Vec<VertexId> = (k..=k + length).map(|i| curve[i % n]).collect();
                 let sides: Vec<OnWall> = (k..k + length).filter_map(|i| on_wall[i % n]).collect();
                 found.extend(continued(ground, r, cut, removed, &sides, chain));
@@ -98,7 +99,7 @@ fn on_wall(
     (is_open && turns_away).then(|| OnWall { end: parent(end), under: parent(under) })
 }
 
-/// The stretch on the ball in the plane of the face ahead.
+/// The stretch on the ball in the planes of the face ahead.
 fn continued(
     ground: &Ground<'_>,
     r: f64,
@@ -107,11 +108,13 @@ fn continued(
     sides: &[OnWall],
     chain: Vec<VertexId>,
 ) -> Option<Flush> {
-    let end = sides[0].end;
-    let normal = ground.patches.face_normal(end);
+    let facets: Vec<u32> = sides.iter().map(|s| ground.patches.facet(s.end)).collect();
+    let normals: Vec<DVec3> = sides.iter().map(|s| ground.patches.face_normal(s.end)).collect();
     let onto = |k: usize| {
         let x = cut.position(chain[k]);
-        let centre = ground.centre_in_plane(x, r, sides[k].under, end)?;
+        // Where two facets meet, both are followed as far as that can be.
+        let normal = if facets[k - 1] == facets[k] { normals[k] } else { (normals[k - 1] + normals[k]).normalize() };
+        let centre = ground.centre_in_plane(x, r, sides[k].under, normal, &facets)?;
         let moved = centre + r * (x - centre).normalize_or_zero();
         (moved.distance(x) <= FARTHEST * r).then_some(moved)
     };
@@ -120,13 +123,20 @@ fn continued(
     // The face grows: what is added faces as it does.
     let place = |k: usize| if k == 0 || k + 1 == along.len() { along[k] } else { on_ball[k - 1] };
     let forwards = cut.halfedge(chain[0], chain[1]).is_some_and(|h| removed[h.face()]);
-    let out = if forwards { normal } else { -normal };
+    let out = if forwards { 1.0 } else { -1.0 };
     let grows = (0..along.len() - 1).all(|k| {
         let (a, b, x, y) = (along[k], along[k + 1], place(k), place(k + 1));
-        [(b - a).cross(y - a), (y - a).cross(x - a)].iter().all(|area| area.dot(out) > -NO_AREA * r * r)
+        [(b - a).cross(y - a), (y - a).cross(x - a)].iter().all(|area| out * area.dot(normals[k]) > -NO_AREA * r * r)
     });
     let moves = on_ball.iter().zip(&along[1..]).any(|(p, q)| p.distance(*q) > MOVED * r);
-    (grows && moves).then(|| Flush { row: Row { chain, on_ball }, stop: Stop { normal: ground.sign * normal, along } })
+    let mut stops = vec![];
+    let mut k = 0;
+    while k < facets.len() {
+        let length = facets[k..].iter().take_while(|f| **f == facets[k]).count();
+        stops.push(Stop { normal: ground.sign * normals[k], along: along[k..=k + length].to_vec() });
+        k += length;
+    }
+    (grows && moves).then_some(Flush { row: Row { chain, on_ball }, stops })
 }
 
 #[cfg(test)]

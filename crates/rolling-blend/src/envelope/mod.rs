@@ -16,6 +16,7 @@
 //! | `flush.rs` | plane faces at which it ends, continued up to the ball |
 //! | `fences.rs` | cross-sections at which the piece ends, and the caps there |
 //! | `draw.rs` | the piece drawn onto the envelope |
+//! | `sound.rs` | folds, and walls and gaps narrower than the ball |
 
 mod centre;
 mod draw;
@@ -26,6 +27,7 @@ mod mark;
 mod outline;
 mod patches;
 mod sides;
+mod sound;
 
 use crate::blended::Blended;
 use crate::cap::{Cap, Fence};
@@ -42,6 +44,7 @@ pub(crate) use centre::Ground;
 use centre::Stop;
 pub(crate) use draw::NO_BALL;
 use fences::{Row, fenced, on_balls};
+use flip::{flip_within, sorted};
 use flush::flush;
 use glam::DVec3;
 use mark::Fine;
@@ -53,6 +56,8 @@ use mesh_query::TriBvh;
 pub(crate) use patches::{Patches, to_segment};
 use profile_nurbs::Profile;
 use rayon::prelude::*;
+pub(crate) use sound::TOO_NARROW;
+use sound::{roomy, unfolded};
 use spine::{BlendCurve, Convexity};
 use std::collections::{BTreeMap, HashSet};
 use tri_intersect::embed::{curve_edges, flood};
@@ -63,13 +68,13 @@ const EDGE: f64 = 0.3;
 /// Shares of that length which are tried where the blend then meets itself in no more than a few places.
 const FINER: [f64; 2] = [1.0, 0.6];
 const FEW: usize = 32;
-/// A turn between two faces of the envelope that is a fold, in radians: 95 degrees.
-const FOLD: f64 = 1.66;
 /// A turn between two faces, in radians, of which nothing is to be rounded.
 const FLAT: f64 = 1e-6;
 /// Levels of the scalar at which outlines are drawn, in radii, in the order in which they are tried. The first counts a face
 /// that a ball touches along its whole middle as consumed.
 const LEVELS: [f64; 3] = [1e-6, 4e-3, -4e-3];
+/// Faces lower than this, in radii, no eye sees, so they may look anywhere: edges are flipped until they do not.
+const NEEDLE: f64 = 1e-3;
 /// How far points of an outline may be moved to spare slivers, in radii.
 const SNAP: f64 = 2e-3;
 
@@ -166,8 +171,9 @@ pub(crate) fn blend(
     let removed = enclosed(&ground, r, curves, &cut, &embedded)?;
     let pieces = cut_out(&embedded.mesh, &removed, &embedded.curves).pieces();
     let mut rows = fences.iter().map(|f| Row::of(f, &embedded, r)).collect::<Result<Vec<_>, _>>()?;
-    let (flush, stops): (Vec<Row>, Vec<Stop>) =
-        flush(&ground, r, &chosen, &cut, &removed, &embedded).into_iter().map(|f| (f.row, f.stop)).unzip();
+    let (flush, stops): (Vec<Row>, Vec<Vec<Stop>>) =
+        flush(&ground, r, &chosen, &cut, &removed, &embedded).into_iter().map(|f| (f.row, f.stops)).unzip();
+    let stops: Vec<Stop> = stops.into_iter().flatten().collect();
     rows.extend(flush);
     let cut_out = CutOut {
         cut: &cut,
@@ -230,10 +236,15 @@ fn tessellated(
     }
     let opened =
         Opened { linkages: vec![], joints: vec![], stops: vec![], loops: vec![], embedded: (*embedded).clone() };
-    let sewn = sew(&opened, removed, &back);
+    let mut sewn = sew(&opened, removed, &back);
+    let on_rows: HashSet<[VertexId; 2]> =
+        ends.iter().flat_map(|e| e.windows(2)).map(|w| [sewn.id(w[0]), sewn.id(w[1])]).map(sorted).collect();
+    flip_within(&mut sewn.mesh, sewn.first_new_face, NEEDLE * r, |edge| on_rows.contains(&edge));
     check(&sewn, watch)?;
     let in_caps: usize = back[..rows.len()].iter().map(|p| p.faces.len()).sum();
-    unfolded(&sewn.mesh, sewn.first_new_face.index() + in_caps)?;
+    let first = sewn.first_new_face.index() + in_caps;
+    unfolded(&sewn.mesh, first)?;
+    roomy(&sewn.mesh, first, r, ground.sign)?;
     let ids = |chain: &[VertexId]| chain.iter().map(|&v| sewn.id(v)).collect();
     let closed = rows.iter().zip(&ends);
     let cap = |(fence, (row, end)): (&Fence, (&Row, &Vec<VertexId>))| Cap {
@@ -246,18 +257,6 @@ fn tessellated(
     let continued = continued.map(|(row, end)| Continued { before: ids(&row.chain), now: ids(end) }).collect();
     let blended = Blended { fields: drawn.len(), ..Blended::new(sewn.mesh, sewn.origins, sewn.first_new_face) };
     Ok(Made { blended, caps, continued })
-}
-
-/// Refuses a surface that turns back on itself: no envelope does between edges as short as these. `first` is the first of the
-/// faces that are drawn.
-fn unfolded(mesh: &TriMesh, first: usize) -> Result<(), Trouble> {
-    let drawn = TriMesh { positions: mesh.positions.clone(), faces: mesh.faces[first..].to_vec() };
-    let drawn = Connected::new(drawn).map_err(Trouble::not_manifold("the blend pinches"))?;
-    let folded = |&h: &HalfedgeId| {
-        drawn.twin(h).is_some_and(|t| h < t) && dihedral_angle(&drawn, h).is_some_and(|a| a.abs() > FOLD)
-    };
-    let places: Vec<DVec3> = drawn.halfedge_ids().filter(folded).map(|h| drawn.position(drawn.tail(h))).collect();
-    if places.is_empty() { Ok(()) } else { Err(Trouble::at("the blend folds", places)) }
 }
 
 /// The outlines of what the ball cannot reach; none where it touches all of the surface, as along the edges of a sliver in a

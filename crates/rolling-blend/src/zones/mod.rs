@@ -18,7 +18,7 @@ mod section;
 use crate::blended::Blended;
 use crate::cap::{Caps, Moved};
 use crate::curve_blend::{CurveBlend, Method};
-use crate::envelope::{self, Continued, Ground, Made, NO_BALL, Patches};
+use crate::envelope::{self, Continued, Ground, Made, NO_BALL, Patches, TOO_NARROW};
 use crate::error::Error;
 use crate::networks::groups;
 use crate::params::{Overlap, Params};
@@ -76,7 +76,9 @@ pub(crate) fn by_zones(
     let mut best: Option<(Candidate, Plan<'_>)> = None;
     let mut last = Plan::around(&balls, &[]);
     let mut spent = Spent { budget: VISITS, failures: BTreeMap::new() };
-    for _ in 0..TRIES {
+    let mut tries = 0;
+    while tries < TRIES {
+        tries += 1;
         let mut plan = loop {
             let Trouble::Places { places: new, .. } = &more else { break None };
             if !widen(&mut places, new, r) {
@@ -106,14 +108,26 @@ pub(crate) fn by_zones(
     if best.failed.is_empty() {
         return Ok(best.blended);
     }
-    // Where the envelope fails, a strip with a smaller ball here and there may not.
-    best.failed.iter().flat_map(|f| &f.spans).for_each(|&span| plan.release(span));
+    // Where the envelope fails, a strip with a smaller ball here and there may not: in all zones, or in some of them.
     let shrinking = Params { overlap: Overlap::Shrink, ..params.clone() };
-    match candidate(&mut plan, &mut spent, &shrinking, watch) {
-        Ok(made) if made.blended.full_share >= best.blended.full_share - DEARER => Ok(made.blended),
-        Err(Trouble::Cancelled(c)) => Err(c.into()),
-        _ => Ok(best.blended),
+    let zones: Vec<Vec<Span>> = best.failed.iter().map(|f| f.spans.clone()).collect();
+    let each = zones.iter().filter(|_| zones.len() > 1).take(TRIES - tries).cloned();
+    let mut best = best.blended;
+    for released in std::iter::once(zones.concat()).chain(each) {
+        let mut eased = plan.clone();
+        released.iter().for_each(|&span| eased.release(span));
+        match candidate(&mut eased, &mut spent, &shrinking, watch) {
+            Ok(made) if made.blended.full_share >= best.full_share - DEARER => {
+                (best, plan) = (made.blended, eased);
+                if released.len() == zones.concat().len() {
+                    break;
+                }
+            }
+            Err(Trouble::Cancelled(c)) => return Err(c.into()),
+            _ => {}
+        }
     }
+    Ok(best)
 }
 
 /// What earlier tries have cost and shown.
@@ -205,7 +219,7 @@ fn by_pieces<'a>(cut: &'a Cut, spent: &mut Spent, params: &Params, watch: &Watch
             let at = trouble.place().unwrap_or_else(|| own[0].points(&cut.mesh).first().copied().unwrap_or_default());
             so_far.leave(|i| group[i], at, trouble.what());
             spent.failures.insert(spans.clone(), (at, trouble.what()));
-            failed.push(Failed { at, may_be_wider: ![NO_BALL, NO_TIME].contains(&trouble.what()), spans });
+            failed.push(Failed { at, may_be_wider: ![NO_BALL, TOO_NARROW, NO_TIME].contains(&trouble.what()), spans });
         }
     }
     if cut.zoned.contains(&false) {

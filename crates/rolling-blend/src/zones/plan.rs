@@ -5,7 +5,7 @@ use super::section::{CutBall, CutBalls};
 use glam::DVec3;
 use mesh_core::{Connected, Faces, Positions, TriMesh, VertexId};
 use spine::BlendCurve;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Distance between the stations at which a curve may be cut, in radii.
 const SPACING: f64 = 0.5;
@@ -13,6 +13,8 @@ const SPACING: f64 = 0.5;
 const MOST: usize = 20_000;
 /// How far from a place of failure curves that do not pass it are taken in at most, in radii.
 const OTHERS: f64 = 10.0;
+/// What is nearer to a place than this, in radii, is next to it.
+const NEXT_TO: f64 = 2.5;
 /// Stretches of fewer stations between zones are not worth a strip.
 const SHORTEST: usize = 4;
 
@@ -117,25 +119,41 @@ impl<'a> Plan<'a> {
         plan
     }
 
-    /// Takes in the stations near a place: the nearest one, those of its curve, and nearer ones of others.
+    /// Takes in the stations near a place: the nearest one, those next to the place, and as far as `near` those that hang
+    /// together with them. What lies near but belongs to another network has no part in what fails here.
     fn seed(&self, p: DVec3, near: f64, waiting: &mut Vec<(usize, usize)>) {
-        let mut nearest: Option<(f64, (usize, usize))> = None;
-        for (c, stations) in self.stations.iter().enumerate() {
-            for k in 0..stations.at.len() {
-                let d = self.place(c, k).distance(p);
-                if nearest.is_none_or(|n| d < n.0) {
-                    nearest = Some((d, (c, k)));
-                }
-                if d < near.min(OTHERS * self.balls.r) {
-                    waiting.push((c, k));
-                }
+        let stations = || (0..self.stations.len()).flat_map(|c| (0..self.stations[c].at.len()).map(move |k| (c, k)));
+        let distance = |&(c, k): &(usize, usize)| self.place(c, k).distance(p);
+        let Some(nearest) = stations().min_by(|a, b| distance(a).total_cmp(&distance(b))) else { return };
+        let r = self.balls.r;
+        let is_near = |s: &(usize, usize)| {
+            let most = if s.0 == nearest.0 { near } else { near.min(OTHERS * r) };
+            distance(s) < most
+        };
+        let mut stack: Vec<(usize, usize)> = stations().filter(|s| is_near(s) && distance(s) < NEXT_TO * r).collect();
+        stack.push(nearest);
+        let mut taken = BTreeSet::new();
+        while let Some((c, k)) = stack.pop() {
+            if !taken.insert((c, k)) {
+                continue;
             }
+            let along = self.stations[c].beside(k).map(|j| (c, j));
+            let linked = along.chain(self.at_end(c, k)).chain(self.beside(c, k));
+            stack.extend(linked.filter(|s| is_near(s) && !taken.contains(s)));
         }
-        let Some((_, nearest)) = nearest else { return };
-        let along = 0..self.stations[nearest.0].at.len();
-        waiting.extend(
-            along.map(|k| (nearest.0, k)).filter(|&(c, k)| (c, k) == nearest || self.place(c, k).distance(p) < near),
-        );
+        waiting.extend(taken);
+    }
+
+    /// What meets at the end of a curve.
+    fn at_end(&self, c: usize, k: usize) -> impl Iterator<Item = (usize, usize)> {
+        let meet = self.stations[c].is_end(k).then(|| self.ends.values().find(|e| e.contains(&(c, k)))).flatten();
+        meet.into_iter().flatten().copied()
+    }
+
+    /// Stations of other curves whose blends may change what a ball at a station touches.
+    fn beside(&self, c: usize, k: usize) -> impl Iterator<Item = (usize, usize)> {
+        let others = self.balls.beside(c, self.place(c, k));
+        others.into_iter().map(|(d, edge, t)| (d, self.stations[d].nearest(edge, t)))
     }
 
     fn place(&self, c: usize, k: usize) -> DVec3 {
@@ -151,14 +169,7 @@ impl<'a> Plan<'a> {
                 if std::mem::replace(&mut self.stations[c].zoned[k], true) {
                     continue;
                 }
-                if self.stations[c].is_end(k) {
-                    // All that meets there is in the zone.
-                    let vertex = self.ends.iter().find(|(_, e)| e.contains(&(c, k)));
-                    waiting.extend(vertex.into_iter().flat_map(|(_, e)| e.iter().copied()));
-                }
-                // A ball there may touch what the blends of other curves change.
-                let others = self.balls.beside(c, self.place(c, k));
-                waiting.extend(others.into_iter().map(|(d, edge, t)| (d, self.stations[d].nearest(edge, t))));
+                waiting.extend(self.at_end(c, k).chain(self.beside(c, k)));
                 let beside: Vec<usize> = self.stations[c].beside(k).collect();
                 for j in beside {
                     if !self.stations[c].zoned[j] && self.ball(c, j).is_none() {
