@@ -40,7 +40,7 @@
 //! | `boolean.rs` | union, difference, intersection: the stages in order |
 //! | `fold.rs` | one operation over many parts |
 //! | `curves.rs` | intersection curves of two surfaces, open or closed |
-//! | `self_test.rs`, `contact.rs` | the self-intersection report; whether two triangles meet |
+//! | `self_test.rs`, `plain.rs`, `contact.rs` | the self-intersection report; flat patches that need no test; whether two triangles meet |
 //! | `embed.rs`, `embed/` | curves made part of a mesh, and the parts into which they divide it |
 //! | `predicate.rs`, `exact.rs` | signs of orientation; numbers beyond 64 bits |
 //! | `near.rs` | the faces that can meet at all |
@@ -70,6 +70,7 @@ mod inside;
 mod near;
 mod options;
 mod pinch;
+mod plain;
 mod predicate;
 mod seam;
 mod self_test;

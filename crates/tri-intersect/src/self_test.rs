@@ -2,9 +2,10 @@
 
 use crate::contact::{fold, meet, meet_beyond_corner};
 use crate::error::Error;
+use crate::plain::Plain;
 use crate::predicate::{facing, largest, scaled};
 use glam::DVec3;
-use mesh_core::{Bounds, FaceId, Faces, Positions, VertexId, Watch};
+use mesh_core::{Bounds, FaceId, Faces, Positions, TriMesh, VertexId, Watch};
 use mesh_query::TriBvh;
 use rayon::prelude::*;
 
@@ -20,11 +21,15 @@ const LIST: usize = 1 << 12;
 /// # Errors
 /// [`Error::NotFinite`], [`Error::Cancelled`].
 pub fn self_intersections<M: Faces + Positions + Sync>(mesh: &M, watch: &Watch) -> Result<Vec<[FaceId; 2]>, Error> {
-    let points = finite_points(mesh)?;
+    let mesh = &scaled_copy(mesh)?;
+    let all: Vec<FaceId> = mesh.face_ids().collect();
+    if Plain::serve(mesh, &all) {
+        return among(mesh, &all, watch);
+    }
     let Ok(tree) = TriBvh::build(mesh) else { return Ok(vec![]) };
     let candidates = tree.self_overlapping_pairs(mesh);
-    let mut found = degenerate(mesh, &points, mesh.face_ids().collect());
-    found.extend(meeting(mesh, &points, &candidates, watch)?);
+    let mut found = degenerate(mesh, all);
+    found.extend(meeting(mesh, &candidates, watch)?);
     found.sort_unstable();
     Ok(found)
 }
@@ -39,8 +44,23 @@ pub fn self_intersections_among<M: Faces + Positions + Sync>(
     faces: &[FaceId],
     watch: &Watch,
 ) -> Result<Vec<[FaceId; 2]>, Error> {
-    let points = finite_points(mesh)?;
-    let mut listed = vec![false; mesh.face_count()];
+    among(&scaled_copy(mesh)?, faces, watch)
+}
+
+/// The mesh as one type, for which all that follows is compiled once, its positions scaled for exact predicates.
+fn scaled_copy<M: Faces + Positions>(mesh: &M) -> Result<TriMesh, Error> {
+    let positions: Vec<DVec3> = mesh.vertex_ids().map(|v| mesh.position(v)).collect();
+    let size = largest(&positions);
+    if !size.is_finite() {
+        let vertex = positions.iter().position(|p| !p.is_finite()).unwrap_or(0);
+        return Err(Error::NotFinite { part: 0, vertex: VertexId::from(vertex) });
+    }
+    let faces = mesh.face_ids().map(|f| mesh.corners(f)).collect();
+    Ok(TriMesh { positions: scaled(positions, size).into_owned(), faces })
+}
+
+fn among(mesh: &TriMesh, faces: &[FaceId], watch: &Watch) -> Result<Vec<[FaceId; 2]>, Error> {
+    let mut listed = vec![false; mesh.faces.len()];
     for f in faces {
         listed[f.index()] = true;
     }
@@ -48,19 +68,20 @@ pub fn self_intersections_among<M: Faces + Positions + Sync>(
     unique.sort_unstable();
     unique.dedup();
     let near = Neighbourhood::of(mesh, &unique);
-    let close: Vec<FaceId> = (0..mesh.face_count() as u32)
+    let close: Vec<FaceId> = (0..mesh.faces.len() as u32)
         .into_par_iter()
         .with_min_len(4096)
         .map(FaceId)
         .filter(|&f| listed[f.index()] || near.reaches(&box_of(mesh, f)))
         .collect();
     let Ok(tree) = TriBvh::build_subset(mesh, &close) else { return Ok(vec![]) };
+    let plain = Plain::new(mesh, &unique);
     let met = |&f: &FaceId| {
         let mut met = vec![];
         // Pairs are tested as they are found: of needles fanned out over a plane nearly every two have boxes that meet.
         tree.visit_box(mesh, &box_of(mesh, f), |g| {
             // Of two listed faces the lower one names the pair.
-            if g != f && !(listed[g.index()] && g < f) && clash(mesh, &points, [f, g]) {
+            if g != f && !(listed[g.index()] && g < f) && !plain.together([f, g]) && clash(mesh, [f, g]) {
                 met.push([f.min(g), f.max(g)]);
             }
         });
@@ -71,12 +92,12 @@ pub fn self_intersections_among<M: Faces + Positions + Sync>(
         watch.step("self-intersections", (i * LIST) as f64 / unique.len() as f64)?;
         found.par_extend(batch.par_iter().map(met).flatten_iter());
     }
-    found.extend(degenerate(mesh, &points, unique));
+    found.extend(degenerate(mesh, unique));
     found.sort_unstable();
     Ok(found)
 }
 
-fn box_of<M: Faces + Positions>(mesh: &M, f: FaceId) -> Bounds {
+fn box_of(mesh: &TriMesh, f: FaceId) -> Bounds {
     Bounds::of(mesh.triangle(f))
 }
 
@@ -91,7 +112,7 @@ struct Neighbourhood {
 const CELLS: usize = 64;
 
 impl Neighbourhood {
-    fn of<M: Faces + Positions>(mesh: &M, faces: &[FaceId]) -> Self {
+    fn of(mesh: &TriMesh, faces: &[FaceId]) -> Self {
         let bounds = faces.iter().fold(Bounds::EMPTY, |b, &f| b.union(box_of(mesh, f)));
         let cell = (bounds.max - bounds.min) / CELLS as f64;
         let mut grid = Self { bounds, cell, touched: vec![0; CELLS * CELLS * CELLS / 64] };
@@ -122,38 +143,22 @@ impl Neighbourhood {
     }
 }
 
-fn finite_points<M: Faces + Positions>(mesh: &M) -> Result<Vec<DVec3>, Error> {
-    let points: Vec<DVec3> = mesh.vertex_ids().map(|v| mesh.position(v)).collect();
-    let size = largest(&points);
-    if !size.is_finite() {
-        let vertex = points.iter().position(|p| !p.is_finite()).unwrap_or(0);
-        return Err(Error::NotFinite { part: 0, vertex: VertexId::from(vertex) });
-    }
-    Ok(scaled(points, size).into_owned())
+fn degenerate(mesh: &TriMesh, faces: Vec<FaceId>) -> Vec<[FaceId; 2]> {
+    faces.into_par_iter().filter(|&f| facing(&mesh.triangle(f)).is_none()).map(|f| [f, f]).collect()
 }
 
-fn degenerate<M: Faces + Sync>(mesh: &M, points: &[DVec3], faces: Vec<FaceId>) -> Vec<[FaceId; 2]> {
-    let flat = |f: &FaceId| facing(&mesh.corners(*f).map(|v| points[v.index()])).is_none();
-    faces.into_par_iter().filter(flat).map(|f| [f, f]).collect()
-}
-
-fn meeting<M: Faces + Sync>(
-    mesh: &M,
-    points: &[DVec3],
-    candidates: &[[FaceId; 2]],
-    watch: &Watch,
-) -> Result<Vec<[FaceId; 2]>, Error> {
+fn meeting(mesh: &TriMesh, candidates: &[[FaceId; 2]], watch: &Watch) -> Result<Vec<[FaceId; 2]>, Error> {
     let mut found = vec![];
     for (i, batch) in candidates.chunks(BATCH).enumerate() {
         watch.step("self-intersections", (i * BATCH) as f64 / candidates.len() as f64)?;
-        found.par_extend(batch.par_iter().filter(|&&pair| clash(mesh, points, pair)).copied());
+        found.par_extend(batch.par_iter().filter(|&&pair| clash(mesh, pair)).copied());
     }
     Ok(found)
 }
 
-fn clash<M: Faces>(mesh: &M, points: &[DVec3], pair: [FaceId; 2]) -> bool {
+fn clash(mesh: &TriMesh, pair: [FaceId; 2]) -> bool {
     let [p, q] = pair.map(|f| mesh.corners(f));
-    faces_clash(p, q, |v| points[v.index()])
+    faces_clash(p, q, |v| mesh.positions[v.index()])
 }
 
 /// Whether two faces of one mesh meet where they should not.
