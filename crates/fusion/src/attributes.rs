@@ -79,7 +79,12 @@ impl Corners<'_> {
         {
             return [0, 1, 2].map(|i| f64::from(u8::from(i == corner)));
         }
-        let weights = barycentric(self.mesh.positions[v.index()], model.mesh.triangle(face));
+        let (at, corners) = (self.mesh.positions[v.index()], model.mesh.triangle(face));
+        // A vertex that was merged into another one at its place.
+        if let Some(corner) = corners.iter().position(|&p| p == at) {
+            return [0, 1, 2].map(|i| f64::from(u8::from(i == corner)));
+        }
+        let weights = barycentric(at, corners);
         let clamped = weights.map(|t| t.clamp(0.0, 1.0));
         let sum: f64 = clamped.iter().sum();
         if sum > 0.0 { clamped.map(|t| t / sum) } else { [1.0, 0.0, 0.0] }

@@ -1,6 +1,7 @@
 //! What a job has to tell, as data: a code, a place, numbers, a sentence and a way out. All sentences are made here.
 
 use crate::choice_refusal::Refusal as ChoiceRefusal;
+use crate::repair::Refusal as RepairRefusal;
 use crate::{Error, blend};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -39,6 +40,12 @@ pub enum Code {
     MovedForRounding,
     /// The solids do not cross.
     Apart,
+    /// What one step of a repair mended.
+    Repaired,
+    /// A hole could not be filled.
+    HoleLeft,
+    /// An input crosses itself, and so does the result there.
+    Inherited,
     /// Another warning, told by its sentence.
     Other,
     /// No edge of the mesh turns by the angle.
@@ -57,6 +64,8 @@ pub enum Code {
     NotByKeep,
     /// An input is not an oriented 2-manifold.
     NotManifold,
+    /// A repair leaves holes.
+    Holes,
     /// The operation is impossible on this input, for the reason in the sentence.
     Impossible,
     /// The result failed its own validation.
@@ -123,7 +132,7 @@ impl Diagnostic {
             e if e.is_invalid_result() => told(Code::Invalid),
             Error::Step { source, .. } => Self { message: error.to_string(), ..Self::of(source) },
             Error::NotManifold { part, .. } => {
-                told(Code::NotManifold).with("part", *part as f64).remedy("weld, orient and split the mesh first")
+                told(Code::NotManifold).with("part", *part as f64).remedy("repair the mesh first")
             }
             Error::Choice(refusal) => of_choice(refusal, told),
             Error::Blend(blend::Error::DoesNotFit { radius, workable, .. }) => {
@@ -133,6 +142,11 @@ impl Diagnostic {
                     None => told.remedy("use a smaller radius, or blend fewer curves"),
                 }
             }
+            Error::Repair(RepairRefusal::Open { loops, edges, torn, .. }) => told(Code::Holes)
+                .with("loops", *loops as f64)
+                .with("edges", *edges as f64)
+                .with("torn", *torn as f64)
+                .remedy("fill the holes, keep them, or close wider cracks"),
             Error::Blend(blend::Error::Keep(_)) => told(Code::NotByKeep).remedy("let the surface be stitched"),
             _ => told(Code::Impossible),
         }

@@ -67,7 +67,7 @@
 //! | `pose/` | models moved |
 //! | `extent.rs`, `outcome.rs`, `validity.rs`, `invalid.rs`, `error.rs` | how every pipeline begins and ends |
 //! | `remeshing.rs`, `region.rs` | remeshing of a surface or a region of it; regions |
-//! | `repair.rs` | welding, orientation, taking apart |
+//! | `repair/` | any mesh made a solid, step by step |
 //! | `info.rs` | counts, measures and defects of one mesh |
 //! | `listing.rs` | feature curves as every door lists them |
 //! | `choice.rs`, `choice_refusal.rs` | which curves are blended; why none can be chosen |
@@ -104,7 +104,7 @@ mod pose;
 mod profile_file;
 mod region;
 pub mod remeshing;
-mod repair;
+pub mod repair;
 mod report;
 pub mod round;
 pub mod sharpen;
@@ -134,7 +134,6 @@ pub use profile_nurbs::Profile;
 pub use region::Region;
 pub use remeshing::remesh;
 pub use render;
-pub use repair::{Repair, repair};
 pub use report::{Counts, CurveReport, Quality, Report, Stage, Validity};
 pub use rolling_blend as blend;
 pub use rolling_blend::features;

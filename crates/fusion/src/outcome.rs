@@ -62,6 +62,20 @@ pub(crate) fn finish_as<'a>(
     Ok(Outcome { model, origins, report })
 }
 
+/// The same for a result that has its attributes already.
+pub(crate) fn finish_model(
+    promise: Promise,
+    model: Model,
+    origins: Origins,
+    format: Format,
+    mut report: Report,
+    watch: &Watch,
+) -> Result<Outcome, Error> {
+    report.describe(&model.mesh, &origins);
+    report.validity = report.time("validate", || as_written(&model, &origins, &[], format, promise, watch))?;
+    Ok(Outcome { model, origins, report })
+}
+
 /// Does a job, and where the 32-bit coordinates of its file would fold slivers beside the blend, does it again with the
 /// linkages moved farther to spare them.
 pub(crate) fn surviving(

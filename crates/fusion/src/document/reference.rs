@@ -1,7 +1,7 @@
 //! What every table of a document takes, as it stands in docs/documents.md.
 
 use crate::operation::{
-    Blend, Boolean, Cluster, Compose, Cut, Detail, On, OptionRow, Options, Pose, Primitive, Remesh, Rotation, Sharpen,
+    Blend, Boolean, Cluster, Compose, Cut, Detail, On, OptionRow, Options, Pose, Primitive, Remesh, Repair, Rotation, Sharpen,
     Snap, option_rows,
 };
 use schemars::JsonSchema;
@@ -55,6 +55,7 @@ pub fn reference() -> String {
     operation::<Detail>(&mut text);
     operation::<Cluster>(&mut text);
     operation::<Remesh>(&mut text);
+    operation::<Repair>(&mut text);
     text.push('\n');
     text
 }
