@@ -5,14 +5,18 @@ use glam::{DVec3, DVec4};
 use mesh_core::{CornerMap, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, TriMesh, VertexOrigin};
 use mesh_io::{Groups, Material, Materials, Model};
 
-/// What the surface of a composition is called in origins and groups: its colours are blended from those of the parts.
+/// What the surface of a composition is called in origins and groups.
 pub(crate) const TRANSITION: &str = "transition";
+
+/// What the material of faces is called whose part has none.
+const UNNAMED: &str = "unnamed";
 
 /// `mesh` with the attributes that its origins lead to. O(n).
 ///
 /// Corners of whole faces keep their values; corners of pieces get the parent face's values interpolated at their
-/// place. New faces have no texture coordinates, normals and colours (NaN), no material, and a group named after the
-/// stage that made them; but a composition's transition has colours, blended from the parts that it joins. An attribute that no input has stays away.
+/// place. New faces have no texture coordinates and normals (NaN), the colours around them, blended into each other, and a group and
+/// a plain material named after the stage that made them. An attribute that no input has stays away. The unit is the first that an
+/// input names.
 pub fn carry(inputs: &[Model], mesh: TriMesh, origins: &Origins) -> Model {
     let corners = Corners { inputs, mesh: &mesh, origins };
     let uvs = inputs
@@ -28,7 +32,7 @@ pub fn carry(inputs: &[Model], mesh: TriMesh, origins: &Origins) -> Model {
         .any(|m| m.colors.is_some())
         .then(|| corners.map(|m, h| m.colors.as_ref().map(|a| a[h].into()), |v| v.to_array()))
         .map(|mut colors| {
-            spread(&mesh, &mut colors, |f| origins.faces[f] == FaceOrigin::New { stage: TRANSITION });
+            spread(&mesh, &mut colors, |f| matches!(origins.faces[f], FaceOrigin::New { .. }));
             colors
         });
     let groups = inputs.iter().any(|m| m.groups.is_some()).then(|| {
@@ -39,13 +43,15 @@ pub fn carry(inputs: &[Model], mesh: TriMesh, origins: &Origins) -> Model {
         Groups { of_face, names }
     });
     let materials = inputs.iter().any(|m| m.materials.is_some()).then(|| {
-        let (of_face, list) = labels(origins, Material::default(), |origin| {
-            let (part, face) = origin.ok()?;
-            inputs.get(part)?.materials.as_ref().map(|m| m.list[m.of_face[face] as usize].clone())
+        let plain = |name: &str| Material { name: name.into(), ..Material::default() };
+        let (of_face, list) = labels(origins, plain(UNNAMED), |origin| match origin {
+            Ok((part, face)) => inputs.get(part)?.materials.as_ref().map(|m| m.list[m.of_face[face] as usize].clone()),
+            Err(stage) => Some(plain(stage)),
         });
         Materials { of_face, list }
     });
-    Model { uvs, normals, colors, groups, materials, mesh, ..Model::default() }
+    let unit = inputs.iter().find_map(|m| m.unit);
+    Model { uvs, normals, colors, groups, materials, unit, mesh, ..Model::default() }
 }
 
 struct Corners<'a> {

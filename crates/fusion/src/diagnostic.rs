@@ -1,6 +1,7 @@
 //! What a job has to tell, as data: a code, a place, numbers, a sentence and a way out. All sentences are made here.
 
 use crate::choice_refusal::Refusal as ChoiceRefusal;
+use crate::inherited::Inherited;
 use crate::repair::Refusal as RepairRefusal;
 use crate::{Error, blend};
 use glam::DVec3;
@@ -159,6 +160,22 @@ impl Diagnostic {
             if distance > far { (Code::CurveFar, Severity::Warning) } else { (Code::CurveTaken, Severity::Note) };
         let told = Self::new(code, severity, message).at(place).with("curve", id as f64).with("distance", distance);
         if distance > far { told.remedy("name a point on the curve, or the curve by its id") } else { told }
+    }
+
+    /// Crossings that the inputs brought along.
+    pub(crate) fn inherited(crossings: &Inherited) -> Self {
+        let Inherited { part, with, count, ref places } = *crossings;
+        let at = places.first().map(|&p| DVec3::from(p));
+        let what = match with {
+            Some(other) => format!("part {part} and part {other} cross each other"),
+            None => format!("part {part} crosses itself"),
+        };
+        let noun = if count == 1 { "pair" } else { "pairs" };
+        let place = at.map_or(String::new(), |p| format!(" near {p}"));
+        let message = format!("{what} in {count} {noun} of faces, and so does the result{place}");
+        let told = Self::new(Code::Inherited, Severity::Warning, message).at(at).with("part", part as f64);
+        let told = with.map_or(told.clone(), |other| told.with("with", other as f64));
+        told.with("pairs", count as f64).remedy("repair the part first")
     }
 
     pub(crate) fn run_out(at: DVec3) -> Self {

@@ -68,6 +68,7 @@
 //! | `extent.rs`, `outcome.rs`, `validity.rs`, `invalid.rs`, `error.rs` | how every pipeline begins and ends |
 //! | `remeshing.rs`, `region.rs` | remeshing of a surface or a region of it; regions |
 //! | `repair/` | any mesh made a solid, step by step |
+//! | `inherited.rs` | where a result crosses itself because its inputs do |
 //! | `info.rs` | counts, measures and defects of one mesh |
 //! | `listing.rs` | feature curves as every door lists them |
 //! | `choice.rs`, `choice_refusal.rs` | which curves are blended; why none can be chosen |
@@ -91,6 +92,7 @@ mod drawings;
 mod error;
 mod extent;
 mod info;
+mod inherited;
 mod invalid;
 pub mod join;
 mod listing;
@@ -119,6 +121,7 @@ pub use diagnostic::{Code, Diagnostic, Severity};
 pub use document::Document;
 pub use drawings::drawings_to_files;
 pub use error::Error;
+pub use inherited::Inherited;
 pub use info::{Defect, Info, Loop};
 pub use invalid::Invalid;
 pub use join::join;

@@ -58,7 +58,8 @@ pub(crate) fn finish_as<'a>(
     report.describe(&mesh, &origins);
     let model = report.time("attributes", || carry(inputs.models, mesh, &origins));
     let known = inputs.connected;
-    report.validity = report.time("validate", || as_written(&model, &origins, known, format, promise, watch))?;
+    let found = report.time("validate", || as_written(&model, &origins, known, format, promise, watch))?;
+    report.checked(found);
     Ok(Outcome { model, origins, report })
 }
 
@@ -72,7 +73,8 @@ pub(crate) fn finish_model(
     watch: &Watch,
 ) -> Result<Outcome, Error> {
     report.describe(&model.mesh, &origins);
-    report.validity = report.time("validate", || as_written(&model, &origins, &[], format, promise, watch))?;
+    let found = report.time("validate", || as_written(&model, &origins, &[], format, promise, watch))?;
+    report.checked(found);
     Ok(Outcome { model, origins, report })
 }
 
