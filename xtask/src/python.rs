@@ -4,7 +4,8 @@ use crate::Fault;
 use crate::generated::Generated;
 use crate::python_types::{default, hint};
 use fusion::operation::{
-    Blend, Boolean, Cluster, Compose, Cut, Detail, OptionRow, Options, Pose, Remesh, Repair, Sharpen, option_rows, schema,
+    Blend, Boolean, Cluster, Compose, Cut, Detail, OptionRow, Options, Pose, Remesh, Repair, Sharpen, option_rows,
+    schema,
 };
 use serde_json::Value;
 use std::fmt::Write;

@@ -5,7 +5,8 @@ use fusion::blend::Limit;
 use fusion::mesh_core::{TriMesh, Watch, bounds};
 use fusion::mesh_io::{self, Model};
 use fusion::operation::{
-    Blend, Boolean, Cluster, Compose, Cut, Detail, Files, OptionError, Options, Pose, Precision, Remesh, Repair, Sharpen,
+    Blend, Boolean, Cluster, Compose, Cut, Detail, Files, OptionError, Options, Pose, Precision, Remesh, Repair,
+    Sharpen,
 };
 use fusion::{Error, Outcome};
 use serde_json::{Map, Value};

@@ -60,7 +60,8 @@ pub fn detail(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcome
     let origins = origins(&meshes[0], &made);
     report.describe(&made.mesh, &origins);
     let model = dress(&parts[0], made);
-    let found = report.time("validate", || as_written(&model, &origins, &[], params.format, Promise::Manifold, watch))?;
+    let found =
+        report.time("validate", || as_written(&model, &origins, &[], params.format, Promise::Manifold, watch))?;
     report.checked(found);
     Ok(Outcome { model, origins, report })
 }

@@ -30,8 +30,7 @@ pub(crate) fn inherited(mesh: &TriMesh, pairs: &[[FaceId; 2]], origins: &Origins
     for &[f, g] in pairs {
         let (one, other) = (part_of(f).or(part_of(g)).unwrap_or(0), part_of(g).or(part_of(f)).unwrap_or(0));
         let (part, with) = (one.min(other), (one != other).then_some(one.max(other)));
-        let entry =
-            parts.entry((part, with)).or_insert_with(|| Inherited { part, with, count: 0, places: vec![] });
+        let entry = parts.entry((part, with)).or_insert_with(|| Inherited { part, with, count: 0, places: vec![] });
         entry.count += 1;
         if entry.places.len() < PLACES {
             entry.places.push(place(mesh, f, g));

@@ -2,8 +2,8 @@
 
 use glam::DVec4;
 use mesh_core::{
-    Adjacency, Connected, CornerMap, FaceId, FaceOrigin, Faces, HalfedgeId, TriMesh, VertexId, VertexOrigin, components,
-    split,
+    Adjacency, Connected, CornerMap, FaceId, FaceOrigin, Faces, HalfedgeId, TriMesh, VertexId, VertexOrigin,
+    components, split,
 };
 use param_conformal::{Harmonic, Weights};
 

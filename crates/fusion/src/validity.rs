@@ -90,18 +90,13 @@ struct Found {
 
 impl Crossings<'_> {
     fn sort(&self, watch: &Watch) -> Result<Found, tri_intersect::Error> {
-        let own = |f: FaceId| {
-            self.promise == Promise::Repaired || matches!(self.origins.faces[f], FaceOrigin::Input { .. })
-        };
+        let own =
+            |f: FaceId| self.promise == Promise::Repaired || matches!(self.origins.faces[f], FaceOrigin::Input { .. });
         let moved = |f: FaceId| self.shape.triangle(f) != self.mesh.triangle(f);
         let pairs = self_intersections(self.shape, watch)?;
         let doubtful: Vec<FaceId> =
             pairs.iter().flatten().copied().filter(|&f| !std::ptr::eq(self.shape, self.mesh) && moved(f)).collect();
-        let before = if doubtful.is_empty() {
-            vec![]
-        } else {
-            self_intersections_among(self.mesh, &doubtful, watch)?
-        };
+        let before = if doubtful.is_empty() { vec![] } else { self_intersections_among(self.mesh, &doubtful, watch)? };
         let crossed = |pair: &[FaceId; 2]| !pair.iter().any(|f| moved(*f)) || before.binary_search(pair).is_ok();
         let (brought, made) = pairs.into_iter().partition(|pair| pair.iter().all(|&f| own(f)) && crossed(pair));
         Ok(Found { made, brought })

@@ -232,7 +232,10 @@ fn colours_that_vary_at_a_vertex_are_averaged() {
         let back = through(&model, format);
         for (&v, color) in back.mesh.faces.iter().flatten().zip(back.colors.unwrap().as_slice()) {
             let wanted = [mean, 1.0, 0.0][v.index().min(2)];
-            assert!((color[0] - wanted).abs() <= tolerance && (color[2] - (1.0 - wanted)).abs() <= tolerance, "{format}");
+            assert!(
+                (color[0] - wanted).abs() <= tolerance && (color[2] - (1.0 - wanted)).abs() <= tolerance,
+                "{format}"
+            );
         }
     }
 }

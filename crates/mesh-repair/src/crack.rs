@@ -110,10 +110,7 @@ fn split(work: &mut Mended, gap: f64) {
 /// Boundary vertices on the inside of boundary edges: the edge's halfedge, the place along it in (0, 1), the vertex.
 fn onto_edges(mesh: &TriMesh, open: &[Side], gap: f64) -> Vec<(HalfedgeId, f64, VertexId)> {
     let ends: Vec<[VertexId; 2]> = open.iter().map(|s| s.0).collect();
-    let lines = TriMesh {
-        positions: mesh.positions.clone(),
-        faces: ends.iter().map(|&[a, b]| [a, b, b]).collect(),
-    };
+    let lines = TriMesh { positions: mesh.positions.clone(), faces: ends.iter().map(|&[a, b]| [a, b, b]).collect() };
     let used: Vec<FaceId> = lines.face_ids().collect();
     let Ok(tree) = TriBvh::build_subset(&lines, &used) else { return vec![] };
     let mut neighbours: FxHashMap<VertexId, Vec<VertexId>> = FxHashMap::default();
@@ -133,7 +130,8 @@ fn onto_edges(mesh: &TriMesh, open: &[Side], gap: f64) -> Vec<(HalfedgeId, f64, 
             }
             // An edge that leaves the line is no other side of it.
             neighbours[&v].iter().any(|&q| {
-                q == a || q == b
+                q == a
+                    || q == b
                     || distance_to_segment(point(q), [point(a), point(b)]) <= gap
                     || [a, b].iter().any(|&end| distance_to_segment(point(end), [p, point(q)]) <= gap)
             })
@@ -146,4 +144,3 @@ fn onto_edges(mesh: &TriMesh, open: &[Side], gap: f64) -> Vec<(HalfedgeId, f64, 
     };
     vertices.into_iter().filter_map(find).collect()
 }
-

@@ -55,8 +55,11 @@ fn sweep(mesh: &mut TriMesh, origins: &mut Origins, flat: &[FaceId]) -> usize {
             gone[f.index()] = !touched[f.index()];
             continue;
         };
-        let others: Vec<HalfedgeId> =
-            around(&sides, edge(mesh.tail(along), mesh.head(along))).iter().map(|s| s.1).filter(|h| h.face() != f).collect();
+        let others: Vec<HalfedgeId> = around(&sides, edge(mesh.tail(along), mesh.head(along)))
+            .iter()
+            .map(|s| s.1)
+            .filter(|h| h.face() != f)
+            .collect();
         if touched[f.index()] || others.iter().any(|h| touched[h.face().index()] || gone[h.face().index()]) {
             continue;
         }

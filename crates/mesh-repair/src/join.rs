@@ -41,7 +41,13 @@ pub(crate) fn joined(mesh: &TriMesh, sides: &[Side], boundary: &[Side], gap: f64
 
 fn near_pairs(mesh: &TriMesh, vertices: &[VertexId], gap: f64) -> Vec<(f64, VertexId, VertexId)> {
     // Equal places are in equal cells, whatever the gap.
-    let cell = |p: DVec3| if gap > 0.0 { (p / gap).floor().to_array().map(|x| (x + 0.0).to_bits()) } else { p.to_array().map(|x| (x + 0.0).to_bits()) };
+    let cell = |p: DVec3| {
+        if gap > 0.0 {
+            (p / gap).floor().to_array().map(|x| (x + 0.0).to_bits())
+        } else {
+            p.to_array().map(|x| (x + 0.0).to_bits())
+        }
+    };
     let mut cells: FxHashMap<[u64; 3], Vec<VertexId>> = FxHashMap::default();
     let mut pairs = vec![];
     for &v in vertices {

@@ -55,14 +55,16 @@ impl Patch {
     pub(crate) fn even(&self, mesh: &Connected<TriMesh>, watch: &Watch) -> Option<Self> {
         let own = Connected::new(self.mesh.clone()).ok()?;
         let n = self.rim.len();
-        let length = (0..n).map(|i| self.mesh.positions[i].distance(self.mesh.positions[(i + 1) % n])).sum::<f64>() / n as f64;
+        let length =
+            (0..n).map(|i| self.mesh.positions[i].distance(self.mesh.positions[(i + 1) % n])).sum::<f64>() / n as f64;
         // Of equilateral triangles, as many as may be.
         let least = (area(&self.mesh) / MOST_FACES * 4.0 / 3f64.sqrt()).sqrt();
         let wanted = length.max(least);
         let sizes = graded_sizes(&own, wanted, 0.3).ok()?;
         let sizes = sizes.as_slice().iter().map(|s| s.max(least)).collect::<Vec<_>>().into();
         let how = Params { feature_angle: 180.0, ..Params::new(wanted) };
-        let made = remesh::remesh(&own, &Frozen::default(), Sizing::PerVertex(&sizes), &how, Projection::Input, watch).ok()?;
+        let made =
+            remesh::remesh(&own, &Frozen::default(), Sizing::PerVertex(&sizes), &how, Projection::Input, watch).ok()?;
         let even = Self { rim: self.rim.clone(), mesh: made.mesh };
         even.is_new(mesh).then_some(even)
     }
@@ -73,7 +75,8 @@ impl Patch {
         if inner.is_empty() {
             return Some(self.clone());
         }
-        let mut names: FxHashMap<VertexId, VertexId> = (0..).map(VertexId).zip(&self.rim).map(|(i, &v)| (v, i)).collect();
+        let mut names: FxHashMap<VertexId, VertexId> =
+            (0..).map(VertexId).zip(&self.rim).map(|(i, &v)| (v, i)).collect();
         let mut around = self.mesh.clone();
         for f in rings(mesh, &self.rim) {
             let corners = mesh.corners(f).map(|v| {

@@ -16,7 +16,11 @@ pub(crate) fn sides(mesh: &TriMesh) -> Vec<Side> {
     let of = |f: mesh_core::FaceId| {
         let [a, b, c] = mesh.corners(f);
         let distinct = a != b && b != c && c != a;
-        let sides = [(edge(a, b), HalfedgeId::new(f, 0)), (edge(b, c), HalfedgeId::new(f, 1)), (edge(c, a), HalfedgeId::new(f, 2))];
+        let sides = [
+            (edge(a, b), HalfedgeId::new(f, 0)),
+            (edge(b, c), HalfedgeId::new(f, 1)),
+            (edge(c, a), HalfedgeId::new(f, 2)),
+        ];
         sides.into_iter().filter(move |_| distinct)
     };
     let mut all: Vec<Side> = mesh.face_ids().flat_map(of).collect();

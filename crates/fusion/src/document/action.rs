@@ -3,7 +3,8 @@
 use super::Error;
 use super::table::read;
 use crate::operation::{
-    Blend, Boolean, Cluster, Compose, Cut, Detail, Files, OptionError, Options, Pose, Remesh, Repair, SetOperation, Sharpen,
+    Blend, Boolean, Cluster, Compose, Cut, Detail, Files, OptionError, Options, Pose, Remesh, Repair, SetOperation,
+    Sharpen,
 };
 use std::ops::Range;
 use toml::de::DeTable;

@@ -1,8 +1,8 @@
 //! What every table of a document takes, as it stands in docs/documents.md.
 
 use crate::operation::{
-    Blend, Boolean, Cluster, Compose, Cut, Detail, On, OptionRow, Options, Pose, Primitive, Remesh, Repair, Rotation, Sharpen,
-    Snap, option_rows,
+    Blend, Boolean, Cluster, Compose, Cut, Detail, On, OptionRow, Options, Pose, Primitive, Remesh, Repair, Rotation,
+    Sharpen, Snap, option_rows,
 };
 use schemars::JsonSchema;
 use std::fmt::Write;

@@ -2,9 +2,7 @@
 
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::{Error, carry};
-use mesh_core::{
-    Connected, FaceId, FaceOrigin, Faces, Origins, TriMesh, VertexId, VertexOrigin, Watch, orient, split,
-};
+use mesh_core::{Connected, FaceId, FaceOrigin, Faces, Origins, TriMesh, VertexId, VertexOrigin, Watch, orient, split};
 use mesh_io::{Model, weld_within};
 use mesh_repair::{
     Mended, Unfilled, Why, close_cracks, drop_duplicates, drop_flat, drop_specks, drop_unusable, drop_unused_vertices,
@@ -71,7 +69,8 @@ impl Step {
             let model = carry(std::slice::from_ref(model), made, &origins);
             Some(Done { model, origins, mended, left })
         };
-        let mended = |m: Mended, what| if m.count == 0 { None } else { made((m.mesh, m.origins), (m.count, what), vec![]) };
+        let mended =
+            |m: Mended, what| if m.count == 0 { None } else { made((m.mesh, m.origins), (m.count, what), vec![]) };
         Ok(match self {
             Self::Unusable => mended(drop_unusable(mesh), "unusable faces dropped"),
             Self::Weld(tolerance) => weld(model, tolerance),

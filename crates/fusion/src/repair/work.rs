@@ -30,7 +30,8 @@ impl<'a> Work<'a> {
         let (name, before) = (step.name(), [self.model.mesh.vertex_count(), self.model.mesh.face_count()]);
         let done = self.report.time(name, || step.apply(&self.model, watch))?;
         let Some(Done { model, origins, mended, left }) = done else { return Ok(0) };
-        self.origins = origins.compose(&[Stage { origins: &self.origins, faces: &self.model.mesh }], &[&self.part.mesh]);
+        self.origins =
+            origins.compose(&[Stage { origins: &self.origins, faces: &self.model.mesh }], &[&self.part.mesh]);
         self.model = model;
         let after = [self.model.mesh.vertex_count(), self.model.mesh.face_count()];
         for ((what, old), new) in ["vertices", "faces"].into_iter().zip(before).zip(after) {
