@@ -1,6 +1,6 @@
 //! Where a result crosses itself because its inputs do.
 
-use mesh_core::{Bounds, FaceId, FaceOrigin, Faces, Origins, TriMesh};
+use mesh_core::{Bounds, FaceId, FaceOrigin, Origins, TriMesh};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -4,7 +4,7 @@ use crate::inherited::{Inherited, inherited};
 use crate::invalid::Invalid;
 use crate::{Error, Validity};
 use glam::DVec3;
-use mesh_core::{Connected, FaceId, FaceOrigin, Faces, Origins, TriMesh, Watch, boundary_loops, validate};
+use mesh_core::{Connected, FaceId, FaceOrigin, Origins, TriMesh, Watch, boundary_loops, validate};
 use mesh_io::{Format, Model};
 use rayon::prelude::*;
 use tri_intersect::{self_intersections, self_intersections_among};

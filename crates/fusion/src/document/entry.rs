@@ -110,7 +110,7 @@ pub(super) fn put_model(out: &mut Vec<u8>, model: &Model) {
         put_ids(out, polygons.corners.iter().map(|v| v.0));
         put_ids(out, polygons.of_face.as_slice().iter().copied());
     });
-    put_some(out, model.unit, |out, unit| put_bytes(out, unit.name().as_bytes()));
+    put_some(out, model.unit.as_ref(), |out, unit| put_bytes(out, unit.name().as_bytes()));
 }
 
 fn put_material(out: &mut Vec<u8>, material: &Material) {

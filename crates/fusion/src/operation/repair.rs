@@ -120,6 +120,7 @@ impl Repair {
         steps.push(wanted(RepairStep::Orient, Step::Orient));
         steps.push(wanted(RepairStep::Split, Step::Split));
         steps.push((self.holes == Holes::Fill).then_some(Step::Holes));
+        // HERE: resolving self-crossings (`tri_intersect::resolve`), which needs a closed and oriented surface.
         steps.push(Some(Step::Unused));
         let holes = if self.holes == Holes::Refuse { repair::Holes::Refused } else { repair::Holes::Kept };
         Ok(Params { steps: steps.into_iter().flatten().collect(), holes, format })
