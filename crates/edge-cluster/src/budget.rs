@@ -6,8 +6,8 @@ use crate::polyhedron::Polyhedron;
 
 /// Polyhedra with no more vertices are tried, whatever their patches cost.
 const FEW: usize = 100;
-/// Control points of all patches, if each vertex has one: 20 000 take some seconds.
-const MOST: usize = 20_000;
+/// Control points of all patches, if each vertex has one: 12 000 take some seconds.
+const MOST: usize = 12_000;
 
 /// Refuses scans and other curved surfaces, whose every vertex would get a patch of its own. O(n).
 ///

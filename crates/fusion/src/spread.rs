@@ -58,9 +58,14 @@ pub(crate) fn spread(mesh: &TriMesh, colors: &mut CornerMap<[f64; 4]>, new: impl
     let values: Vec<[f64; 4]> = held.iter().map(|v| around[v.index()]).map(|(sum, n)| (sum / n).to_array()).collect();
     let Ok(harmonic) = Harmonic::with_weights(&own, &held, Weights::Uniform) else { return };
     let found = harmonic.solve(&values);
+    // A mean of equal numbers may be rounded beyond them.
+    let range = [0, 1, 2, 3].map(|k| {
+        values.iter().map(|v| v[k]).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    });
+    let within = |color: [f64; 4]| [0, 1, 2, 3].map(|k| color[k].max(range[k].0).min(range[k].1));
     for (&f, corners) in faces.iter().zip(&own.mesh().faces) {
         for (k, &v) in corners.iter().enumerate() {
-            colors[HalfedgeId::new(f, k)] = found[v];
+            colors[HalfedgeId::new(f, k)] = within(found[v]);
         }
     }
 }

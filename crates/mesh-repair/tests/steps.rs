@@ -28,7 +28,7 @@ proptest! {
             soup.faces[f].swap(1, 2);
         }
         for _ in 0..repeats {
-            let face = soup.faces[random.usize(..soup.faces.len())];
+            let face = soup.faces[random.usize(..ball.faces.len())];
             soup.faces.push(face);
             soup.faces.push([face[0], face[1], face[1]]);
         }

@@ -44,7 +44,7 @@ pub enum Holes {
 /// Does every step in order, and checks the result.
 ///
 /// # Errors
-/// [`Error::Repair`] where no solid comes out; [`Error::Invalid`] where the format cannot hold it, or a changed face crosses another.
+/// [`Error::Repair`] where no solid comes out; [`Error::Invalid`] where the format cannot hold it, or rounding makes faces cross. Crossings are told, not refused.
 pub fn repair(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, Error> {
     let mut work = Work::new("repair", part);
     let (mut measured, mut torn) = (false, 0);
@@ -61,7 +61,7 @@ pub fn repair(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, E
     }
     check(&work.model.mesh, params.holes, torn)?;
     let Work { model, origins, report, .. } = work;
-    finish_model(Promise::Manifold, model, origins, params.format, report, watch)
+    finish_model(Promise::Repaired, model, origins, params.format, report, watch)
 }
 
 /// Edges with more than two faces, or whose two faces disagree.
