@@ -143,10 +143,11 @@ impl Diagnostic {
                     None => told.remedy("use a smaller radius, or blend fewer curves"),
                 }
             }
-            Error::Repair(RepairRefusal::Open { loops, edges, torn, .. }) => told(Code::Holes)
+            Error::Repair(RepairRefusal::Open { loops, edges, torn, unfilled, .. }) => told(Code::Holes)
                 .with("loops", *loops as f64)
                 .with("edges", *edges as f64)
                 .with("torn", *torn as f64)
+                .with("unfilled", *unfilled as f64)
                 .remedy("fill the holes, keep them, or close wider cracks"),
             Error::Blend(blend::Error::Keep(_)) => told(Code::NotByKeep).remedy("let the surface be stitched"),
             _ => told(Code::Impossible),

@@ -67,6 +67,10 @@ fn a_hole_is_refused_filled_or_kept() {
     assert!(filled.stderr.contains("holes: 1 holes filled"), "{}", filled.stderr);
     let info = json(bench.run("info filled.off --json").expect(0).text());
     assert_eq!((info["closed"].as_bool(), info["self_intersections"].as_u64()), (Some(true), Some(0)));
+    // A single triangle bounds nothing.
+    bench.file("sheet.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    let sheet = bench.run("repair sheet.off -o no.off --holes fill").expect(4);
+    assert!(sheet.stderr.contains("no surface fills 1 of them"), "{}", sheet.stderr);
     bench.run("repair open.off -o no.off --gap -1").expect(2);
     bench.run("repair open.off -o no.off --holes drill").expect(2);
 }

@@ -17,7 +17,7 @@ words! {
     pub enum Holes: "a way with holes" {
         /// A result that has any is refused
         Refuse = "refuse",
-        /// They are filled one by one with smooth surfaces; those that cannot be are left, with a warning
+        /// They are filled one by one with smooth surfaces; a result with one that cannot be is refused
         Fill = "fill",
         /// They stay
         Keep = "keep",
@@ -122,7 +122,7 @@ impl Repair {
         steps.push((self.holes == Holes::Fill).then_some(Step::Holes));
         // HERE: resolving self-crossings (`tri_intersect::resolve`), which needs a closed and oriented surface.
         steps.push(Some(Step::Unused));
-        let holes = if self.holes == Holes::Refuse { repair::Holes::Refused } else { repair::Holes::Kept };
+        let holes = if self.holes == Holes::Keep { repair::Holes::Kept } else { repair::Holes::Refused };
         Ok(Params { steps: steps.into_iter().flatten().collect(), holes, format })
     }
 }

@@ -13,6 +13,7 @@ mod work;
 pub use refusal::Refusal;
 pub use step::Step;
 
+use crate::diagnostic::Code;
 use crate::outcome::{Outcome, finish_model};
 use crate::validity::Promise;
 use crate::{Error, extent};
@@ -59,7 +60,8 @@ pub fn repair(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, E
         }
         work.step(step, watch)?;
     }
-    check(&work.model.mesh, params.holes, torn)?;
+    let unfilled = work.report.diagnostics.iter().filter(|d| d.code == Code::HoleLeft).count();
+    check(&work.model.mesh, params.holes, torn, unfilled)?;
     let Work { model, origins, report, .. } = work;
     finish_model(Promise::Repaired, model, origins, params.format, report, watch)
 }
@@ -70,7 +72,7 @@ fn tangled_edges(mesh: &TriMesh) -> usize {
 }
 
 /// Refuses what is no solid.
-fn check(mesh: &TriMesh, holes: Holes, torn: usize) -> Result<(), Error> {
+fn check(mesh: &TriMesh, holes: Holes, torn: usize, unfilled: usize) -> Result<(), Error> {
     if mesh.faces.is_empty() {
         return Err(Refusal::Nothing.into());
     }
@@ -79,7 +81,7 @@ fn check(mesh: &TriMesh, holes: Holes, torn: usize) -> Result<(), Error> {
     match loops.iter().max_by_key(|walk| walk.len()) {
         Some(longest) if holes == Holes::Refused => {
             let at = mesh.positions[mesh.corners(longest[0].face())[longest[0].corner()].index()];
-            Err(Refusal::Open { loops: loops.len(), edges: longest.len(), at, torn }.into())
+            Err(Refusal::Open { loops: loops.len(), edges: longest.len(), at, torn, unfilled }.into())
         }
         _ => Ok(()),
     }

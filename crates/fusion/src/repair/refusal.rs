@@ -10,8 +10,9 @@ pub enum Refusal {
     Nothing,
     /// The surface has holes.
     #[error(
-        "the surface is not closed: {loops} boundary loops are left, the longest of {edges} edges, near {at}{}; fill the holes (holes: fill), keep them (holes: keep), or close wider cracks (gap)",
-        torn_note(*torn)
+        "the surface is not closed: {loops} boundary loops are left, the longest of {edges} edges, near {at}{}; {}",
+        torn_note(*torn),
+        remedy(*unfilled)
     )]
     Open {
         /// How many boundary loops.
@@ -22,7 +23,18 @@ pub enum Refusal {
         at: DVec3,
         /// Edges where faces had to be separated.
         torn: usize,
+        /// How many no surface fills without crossing something; 0 where filling was not asked for.
+        unfilled: usize,
     },
+}
+
+fn remedy(unfilled: usize) -> String {
+    match unfilled {
+        0 => "fill the holes (holes: fill), keep them (holes: keep), or close wider cracks (gap)".into(),
+        n => format!(
+            "no surface fills {n} of them without crossing something; keep them (holes: keep), or close wider cracks (gap)"
+        ),
+    }
 }
 
 fn torn_note(torn: usize) -> String {
