@@ -30,7 +30,9 @@ pub fn carry(inputs: &[Model], mesh: TriMesh, origins: &Origins) -> Model {
     let colors = inputs
         .iter()
         .any(|m| m.colors.is_some())
-        .then(|| corners.map(|m, h| m.colors.as_ref().map(|a| a[h].into()), |v| v.to_array()))
+        .then(|| {
+            corners.map(|m, h| m.colors.as_ref().map(|a| a[h].into()), |v| v.to_array().map(|x| x.clamp(0.0, 1.0)))
+        })
         .map(|mut colors| {
             spread(&mesh, &mut colors, |f| matches!(origins.faces[f], FaceOrigin::New { .. }));
             colors

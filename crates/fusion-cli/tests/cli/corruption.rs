@@ -28,6 +28,7 @@ const VERBS: [&str; 22] = [
     "compose IN cap.ply -o out.ply --method montage",
     "detail IN -o out.ply --target near=1,0,0,0.8 --source near=-1,0,0,0.9",
     "cluster IN -o out.ply",
+    "repair IN -o out.ply --holes fill",
     "remesh IN -o out.ply --edge-length 0.3",
     "remesh IN -o out.ply --smooth taubin",
     "render IN -o out.png --size 48",
