@@ -9,7 +9,7 @@ use mesh_io::{Format, Model};
 use std::fs;
 
 /// Every verb, IN being the broken file; the others are sound.
-const VERBS: [&str; 22] = [
+const VERBS: [&str; 23] = [
     "info IN",
     "info IN --json",
     "convert IN -o out.ply",
