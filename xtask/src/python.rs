@@ -4,7 +4,8 @@ use crate::Fault;
 use crate::generated::Generated;
 use crate::python_types::{default, hint};
 use fusion::operation::{
-    Blend, Boolean, Cluster, Compose, Cut, Detail, OptionRow, Options, Pose, Remesh, Sharpen, option_rows, schema,
+    Blend, Boolean, Cluster, Compose, Cut, Detail, OptionRow, Options, Pose, Remesh, Repair, Sharpen, option_rows,
+    schema,
 };
 use serde_json::Value;
 use std::fmt::Write;
@@ -56,6 +57,7 @@ fn functions() -> Vec<Function> {
         function::<Detail>("detail", One, DETAIL),
         function::<Cluster>("cluster", One, CLUSTER),
         function::<Remesh>("remesh", One, REMESH),
+        function::<Repair>("repair", One, REPAIR),
         function::<Pose>("pose", One, POSE),
     ]
 }
@@ -98,6 +100,10 @@ round.report["figures"]["patches"]
 const REMESH: &str = r#"even = fm.remesh(fm.sphere(1.0), edge_length=0.2)
 even.report["validity"]["closed"]
 True"#;
+const REPAIR: &str = r#"box = fm.box((1, 1, 1))
+soup = fm.Mesh(box.vertices[box.faces].reshape(-1, 3), range(36))
+round(fm.info(fm.repair(soup))["volume"], 9)
+1.0"#;
 const POSE: &str = r"moved = fm.pose(fm.box((1, 1, 1)), rotate=((0, 0, 1), 45), translate=(0, 0, 2))
 round(float(moved.vertices[:, 0].max()), 9)
 0.707106781";

@@ -35,6 +35,18 @@ pub enum Error {
         /// Where it is.
         at: DVec3,
     },
+    /// There are too many vertices for one patch each.
+    #[error(
+        "the polyhedron has {vertices} vertices, whose patches would have {points} control points, more than {most}; for a scan or a curved model use `blend`, or name the clusters, or decimate it first"
+    )]
+    TooLarge {
+        /// How many vertices.
+        vertices: usize,
+        /// How many control points, if each had a patch.
+        points: usize,
+        /// The largest number that is tried.
+        most: usize,
+    },
     /// A set of vertices is no cluster.
     #[error("the cluster of vertices {vertices:?} at {at} {why}")]
     NoCluster {

@@ -168,7 +168,8 @@ impl Layout {
     }
 }
 
-fn shape_of(sides: usize, degree: Option<Degree>, g: usize) -> Shape {
+/// The shape of a patch with so many sides, of the degree asked for or else 2g + 1.
+pub(crate) fn shape_of(sides: usize, degree: Option<Degree>, g: usize) -> Shape {
     let simplex = |degree| Shape::Simplex { sides, degree };
     match (sides, degree) {
         (4, Some(Degree::Tensor(a, b))) => Shape::Tensor([a, b]),

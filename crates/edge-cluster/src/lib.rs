@@ -20,6 +20,7 @@
 //! | `polyhedron.rs`, `plane.rs` | planar faces with holes, read off a mesh; planes and where they meet |
 //! | `cluster.rs` | a cluster: its backbone, open edges and sides |
 //! | `cover.rs`, `symmetry.rs` | clusters chosen automatically, as symmetric as the polyhedron is |
+//! | `budget.rs` | what is too large to be covered |
 //! | `control.rs` | control points by index, and the sides whose contact they decide |
 //! | `net.rs`, `fair.rs` | control nets: every point in its planes, and in a fair place there |
 //! | `embedding.rs`, `spatch.rs`, `patch.rs` | evaluation with derivatives |
@@ -32,6 +33,7 @@
 //! | `error.rs` | why there is no blend |
 
 mod blend;
+mod budget;
 mod cluster;
 mod contact;
 mod control;
@@ -55,6 +57,7 @@ mod symmetry;
 mod weave;
 
 pub use blend::{Blend, blend};
+pub use budget::check_budget;
 pub use cluster::Cluster;
 pub use contact::contact_slopes;
 pub use control::Shape;

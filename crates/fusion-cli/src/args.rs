@@ -12,6 +12,7 @@ use crate::verbs::detail::DetailArgs;
 use crate::verbs::grid::GridArgs;
 use crate::verbs::pose::PoseArgs;
 use crate::verbs::remesh::RemeshArgs;
+use crate::verbs::repair::RepairArgs;
 use crate::verbs::run::RunArgs;
 use crate::verbs::sharpen::SharpenArgs;
 use crate::verbs::summary::SummaryArgs;
@@ -43,8 +44,10 @@ own validation; 6 the output cannot be written; 130 cancelled. Any code but 0 le
 pub enum Verb {
     /// Measure and check a mesh
     Info(Info),
-    /// Convert between formats; repair on request
+    /// Convert between formats
     Convert(Convert),
+    /// Make a mesh a solid: weld, orient, split, drop what has no area, close cracks, fill holes
+    Repair(RepairArgs),
     /// List the feature curves of a mesh
     Features(Features),
     /// Join solids into one
@@ -102,6 +105,7 @@ impl Verb {
         match self {
             Self::Info(_) => "info",
             Self::Convert(_) => "convert",
+            Self::Repair(_) => "repair",
             Self::Features(_) => "features",
             Self::Union(_) => "union",
             Self::Difference(_) => "difference",

@@ -1,11 +1,11 @@
 //! One command from its arguments to its files.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, with_files};
 use crate::output::{self, Outputs};
 use crate::progress::Progress;
 use crate::shared_args::{Common, Source, Target};
 use fusion::mesh_core::{Bounds, Origins, Watch, bounds};
-use fusion::{Counts, Report, Stage};
+use fusion::{Counts, Report, Severity, Stage};
 use mesh_io::{AtomicFiles, Format, Model};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -163,8 +163,8 @@ impl Session {
         told: impl FnOnce(&Report) -> String,
     ) -> Result<(), Failure> {
         self.watch().step("write", 0.0).map_err(|_| Failure::cancelled())?;
+        let report = &self.completed(report);
         self.check_strict(report)?;
-        let report = &self.with_reading(report);
         let mut outputs = Outputs::default();
         for (path, bytes) in files {
             outputs.add(path, bytes);
@@ -194,9 +194,16 @@ impl Session {
         }
     }
 
-    /// The report with the time of reading as its first stage.
-    fn with_reading(&self, report: &Report) -> Report {
+    /// The report with the time of reading as its first stage, and files in place of the parts that warnings count.
+    fn completed(&self, report: &Report) -> Report {
         let mut report = report.clone();
+        let files: Vec<PathBuf> = self.inputs.borrow().iter().map(|input| PathBuf::from(&input.name)).collect();
+        for warning in &mut report.warnings {
+            *warning = with_files(warning, &files);
+        }
+        for told in report.diagnostics.iter_mut().filter(|d| d.severity == Severity::Warning) {
+            told.message = with_files(&told.message, &files);
+        }
         let milliseconds = self.reading.get().as_micros() as f64 / 1e3;
         if milliseconds > 0.0 {
             report.stages.insert(0, Stage { name: "read".into(), milliseconds });

@@ -5,7 +5,8 @@ use fusion::blend::Limit;
 use fusion::mesh_core::{TriMesh, Watch, bounds};
 use fusion::mesh_io::{self, Model};
 use fusion::operation::{
-    Blend, Boolean, Cluster, Compose, Cut, Detail, Files, OptionError, Options, Pose, Precision, Remesh, Sharpen,
+    Blend, Boolean, Cluster, Compose, Cut, Detail, Files, OptionError, Options, Pose, Precision, Remesh, Repair,
+    Sharpen,
 };
 use fusion::{Error, Outcome};
 use serde_json::{Map, Value};
@@ -43,6 +44,7 @@ pub fn by_name(
         Detail::NAME => return detail(&read(options)?, parts, precision, watch),
         Pose::NAME => read::<Pose>(options)?.run(first(parts)?, watch).map(Done::from),
         Remesh::NAME => read::<Remesh>(options)?.run(first(parts)?, precision, watch).map(Done::from),
+        Repair::NAME => read::<Repair>(options)?.run(first(parts)?, precision, watch).map(Done::from),
         Sharpen::NAME => read::<Sharpen>(options)?.run(first(parts)?, precision, watch).map(Done::from),
         other => return Err(Fault::Internal(format!("there is no operation {other:?}"))),
     }

@@ -5,14 +5,18 @@ use glam::{DVec3, DVec4};
 use mesh_core::{CornerMap, FaceId, FaceMap, FaceOrigin, Faces, HalfedgeId, Origins, TriMesh, VertexOrigin};
 use mesh_io::{Groups, Material, Materials, Model};
 
-/// What the surface of a composition is called in origins and groups: its colours are blended from those of the parts.
+/// What the surface of a composition is called in origins and groups.
 pub(crate) const TRANSITION: &str = "transition";
+
+/// What the material of faces is called whose part has none.
+const UNNAMED: &str = "unnamed";
 
 /// `mesh` with the attributes that its origins lead to. O(n).
 ///
 /// Corners of whole faces keep their values; corners of pieces get the parent face's values interpolated at their
-/// place. New faces have no texture coordinates, normals and colours (NaN), no material, and a group named after the
-/// stage that made them; but a composition's transition has colours, blended from the parts that it joins. An attribute that no input has stays away.
+/// place. New faces have no texture coordinates and normals (NaN), the colours around them, blended into each other, and a group and
+/// a plain material named after the stage that made them. An attribute that no input has stays away. The unit is the first that an
+/// input names.
 pub fn carry(inputs: &[Model], mesh: TriMesh, origins: &Origins) -> Model {
     let corners = Corners { inputs, mesh: &mesh, origins };
     let uvs = inputs
@@ -26,9 +30,11 @@ pub fn carry(inputs: &[Model], mesh: TriMesh, origins: &Origins) -> Model {
     let colors = inputs
         .iter()
         .any(|m| m.colors.is_some())
-        .then(|| corners.map(|m, h| m.colors.as_ref().map(|a| a[h].into()), |v| v.to_array()))
+        .then(|| {
+            corners.map(|m, h| m.colors.as_ref().map(|a| a[h].into()), |v| v.to_array().map(|x| x.clamp(0.0, 1.0)))
+        })
         .map(|mut colors| {
-            spread(&mesh, &mut colors, |f| origins.faces[f] == FaceOrigin::New { stage: TRANSITION });
+            spread(&mesh, &mut colors, |f| matches!(origins.faces[f], FaceOrigin::New { .. }));
             colors
         });
     let groups = inputs.iter().any(|m| m.groups.is_some()).then(|| {
@@ -39,13 +45,15 @@ pub fn carry(inputs: &[Model], mesh: TriMesh, origins: &Origins) -> Model {
         Groups { of_face, names }
     });
     let materials = inputs.iter().any(|m| m.materials.is_some()).then(|| {
-        let (of_face, list) = labels(origins, Material::default(), |origin| {
-            let (part, face) = origin.ok()?;
-            inputs.get(part)?.materials.as_ref().map(|m| m.list[m.of_face[face] as usize].clone())
+        let plain = |name: &str| Material { name: name.into(), ..Material::default() };
+        let (of_face, list) = labels(origins, plain(UNNAMED), |origin| match origin {
+            Ok((part, face)) => inputs.get(part)?.materials.as_ref().map(|m| m.list[m.of_face[face] as usize].clone()),
+            Err(stage) => Some(plain(stage)),
         });
         Materials { of_face, list }
     });
-    Model { uvs, normals, colors, groups, materials, mesh, ..Model::default() }
+    let unit = inputs.iter().find_map(|m| m.unit);
+    Model { uvs, normals, colors, groups, materials, unit, mesh, ..Model::default() }
 }
 
 struct Corners<'a> {
@@ -79,7 +87,12 @@ impl Corners<'_> {
         {
             return [0, 1, 2].map(|i| f64::from(u8::from(i == corner)));
         }
-        let weights = barycentric(self.mesh.positions[v.index()], model.mesh.triangle(face));
+        let (at, corners) = (self.mesh.positions[v.index()], model.mesh.triangle(face));
+        // A vertex that was merged into another one at its place.
+        if let Some(corner) = corners.iter().position(|&p| p == at) {
+            return [0, 1, 2].map(|i| f64::from(u8::from(i == corner)));
+        }
+        let weights = barycentric(at, corners);
         let clamped = weights.map(|t| t.clamp(0.0, 1.0));
         let sum: f64 = clamped.iter().sum();
         if sum > 0.0 { clamped.map(|t| t / sum) } else { [1.0, 0.0, 0.0] }

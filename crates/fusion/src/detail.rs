@@ -1,8 +1,8 @@
 //! Geometry detail: a smooth region gets the detail of others (\[Lin2008\] §4.2).
 
+use crate::diagnostic::Code;
 use crate::outcome::Outcome;
-use crate::validity::Promise;
-use crate::validity::as_written;
+use crate::validity::{Promise, as_written, crossings_of};
 use crate::{Counts, Error, Region, Report, extent};
 use detail_transfer::{Exemplar, Transferred, roughness, transfer};
 use glam::DVec3;
@@ -60,8 +60,9 @@ pub fn detail(parts: &[Model], params: &Params, watch: &Watch) -> Result<Outcome
     let origins = origins(&meshes[0], &made);
     report.describe(&made.mesh, &origins);
     let model = dress(&parts[0], made);
-    report.validity =
+    let found =
         report.time("validate", || as_written(&model, &origins, &[], params.format, Promise::Manifold, watch))?;
+    report.checked(found);
     Ok(Outcome { model, origins, report })
 }
 
@@ -82,8 +83,11 @@ pub fn onto(composed: Outcome, parts: &[Model], params: &Params, watch: &Watch) 
     out.origins = out.origins.compose(&[Stage { origins: &origins, faces: &all[0].mesh }], &inputs);
     first.validity.manifold = out.report.validity.manifold;
     first.validity.self_intersections = out.report.validity.self_intersections;
+    first.inherited = crossings_of(&out.model.mesh, &out.origins, watch)?;
     first.figures.extend(out.report.figures);
-    first.warnings.extend(out.report.warnings);
+    // What the parts brought along is told by the composition.
+    let told = |w: &String| out.report.diagnostics.iter().any(|d| d.code == Code::Inherited && d.message == *w);
+    first.warnings.extend(out.report.warnings.iter().filter(|w| !told(w)).cloned());
     for mut stage in out.report.stages {
         stage.name = format!("{STAGE}: {}", stage.name);
         first.stages.push(stage);

@@ -1,6 +1,8 @@
 //! What a job has to tell, as data: a code, a place, numbers, a sentence and a way out. All sentences are made here.
 
 use crate::choice_refusal::Refusal as ChoiceRefusal;
+use crate::inherited::Inherited;
+use crate::repair::Refusal as RepairRefusal;
 use crate::{Error, blend};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -39,6 +41,12 @@ pub enum Code {
     MovedForRounding,
     /// The solids do not cross.
     Apart,
+    /// What one step of a repair mended.
+    Repaired,
+    /// A hole could not be filled.
+    HoleLeft,
+    /// An input crosses itself, and so does the result there.
+    Inherited,
     /// Another warning, told by its sentence.
     Other,
     /// No edge of the mesh turns by the angle.
@@ -57,6 +65,8 @@ pub enum Code {
     NotByKeep,
     /// An input is not an oriented 2-manifold.
     NotManifold,
+    /// A repair leaves holes.
+    Holes,
     /// The operation is impossible on this input, for the reason in the sentence.
     Impossible,
     /// The result failed its own validation.
@@ -123,7 +133,7 @@ impl Diagnostic {
             e if e.is_invalid_result() => told(Code::Invalid),
             Error::Step { source, .. } => Self { message: error.to_string(), ..Self::of(source) },
             Error::NotManifold { part, .. } => {
-                told(Code::NotManifold).with("part", *part as f64).remedy("weld, orient and split the mesh first")
+                told(Code::NotManifold).with("part", *part as f64).remedy("repair the mesh first")
             }
             Error::Choice(refusal) => of_choice(refusal, told),
             Error::Blend(blend::Error::DoesNotFit { radius, workable, .. }) => {
@@ -133,6 +143,12 @@ impl Diagnostic {
                     None => told.remedy("use a smaller radius, or blend fewer curves"),
                 }
             }
+            Error::Repair(RepairRefusal::Open { loops, edges, torn, unfilled, .. }) => told(Code::Holes)
+                .with("loops", *loops as f64)
+                .with("edges", *edges as f64)
+                .with("torn", *torn as f64)
+                .with("unfilled", *unfilled as f64)
+                .remedy("fill the holes, keep them, or close wider cracks"),
             Error::Blend(blend::Error::Keep(_)) => told(Code::NotByKeep).remedy("let the surface be stitched"),
             _ => told(Code::Impossible),
         }
@@ -145,6 +161,22 @@ impl Diagnostic {
             if distance > far { (Code::CurveFar, Severity::Warning) } else { (Code::CurveTaken, Severity::Note) };
         let told = Self::new(code, severity, message).at(place).with("curve", id as f64).with("distance", distance);
         if distance > far { told.remedy("name a point on the curve, or the curve by its id") } else { told }
+    }
+
+    /// Crossings that the inputs brought along.
+    pub(crate) fn inherited(crossings: &Inherited) -> Self {
+        let Inherited { part, with, count, ref places } = *crossings;
+        let at = places.first().map(|&p| DVec3::from(p));
+        let what = match with {
+            Some(other) => format!("part {part} and part {other} cross each other"),
+            None => format!("part {part} crosses itself"),
+        };
+        let noun = if count == 1 { "pair" } else { "pairs" };
+        let place = at.map_or(String::new(), |p| format!(" near {p}"));
+        let message = format!("{what} in {count} {noun} of faces, and so does the result{place}");
+        let told = Self::new(Code::Inherited, Severity::Warning, message).at(at).with("part", part as f64);
+        let told = with.map_or(told.clone(), |other| told.with("with", other as f64));
+        told.with("pairs", count as f64).remedy("repair the part first")
     }
 
     pub(crate) fn run_out(at: DVec3) -> Self {

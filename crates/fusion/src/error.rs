@@ -6,6 +6,7 @@ use crate::cut::Error as CutError;
 use crate::document::Error as DocumentError;
 use crate::invalid::Invalid;
 use crate::operation::OptionError;
+use crate::repair::Refusal as RepairRefusal;
 use crate::sharpen::Refusal as SharpenRefusal;
 use glam::DVec3;
 use mesh_core::{Cancelled, NotManifold};
@@ -84,6 +85,9 @@ pub enum Error {
         /// Why.
         source: Box<Self>,
     },
+    /// A repair gives no solid.
+    #[error(transparent)]
+    Repair(#[from] RepairRefusal),
     /// A plane cannot cut.
     #[error(transparent)]
     Cut(#[from] CutError),
@@ -127,6 +131,7 @@ impl Error {
             Self::Compose(error) => error.place(),
             Self::NoCurve(_, at) => *at,
             Self::Choice(refusal) => refusal.place(),
+            Self::Repair(refusal) => refusal.place(),
             Self::Remesh(
                 remesh::Error::NotFinite { place, .. }
                 | remesh::Error::Singular { at: place }

@@ -67,7 +67,8 @@
 //! | `pose/` | models moved |
 //! | `extent.rs`, `outcome.rs`, `validity.rs`, `invalid.rs`, `error.rs` | how every pipeline begins and ends |
 //! | `remeshing.rs`, `region.rs` | remeshing of a surface or a region of it; regions |
-//! | `repair.rs` | welding, orientation, taking apart |
+//! | `repair/` | any mesh made a solid, step by step |
+//! | `inherited.rs` | where a result crosses itself because its inputs do |
 //! | `info.rs` | counts, measures and defects of one mesh |
 //! | `listing.rs` | feature curves as every door lists them |
 //! | `choice.rs`, `choice_refusal.rs` | which curves are blended; why none can be chosen |
@@ -91,6 +92,7 @@ mod drawings;
 mod error;
 mod extent;
 mod info;
+mod inherited;
 mod invalid;
 pub mod join;
 mod listing;
@@ -104,7 +106,7 @@ mod pose;
 mod profile_file;
 mod region;
 pub mod remeshing;
-mod repair;
+pub mod repair;
 mod report;
 pub mod round;
 pub mod sharpen;
@@ -120,6 +122,7 @@ pub use document::Document;
 pub use drawings::drawings_to_files;
 pub use error::Error;
 pub use info::{Defect, Info, Loop};
+pub use inherited::Inherited;
 pub use invalid::Invalid;
 pub use join::join;
 pub use listing::{ListedCurve, convexity_word, list_curves};
@@ -134,7 +137,6 @@ pub use profile_nurbs::Profile;
 pub use region::Region;
 pub use remeshing::remesh;
 pub use render;
-pub use repair::{Repair, repair};
 pub use report::{Counts, CurveReport, Quality, Report, Stage, Validity};
 pub use rolling_blend as blend;
 pub use rolling_blend::features;

@@ -58,7 +58,23 @@ pub(crate) fn finish_as<'a>(
     report.describe(&mesh, &origins);
     let model = report.time("attributes", || carry(inputs.models, mesh, &origins));
     let known = inputs.connected;
-    report.validity = report.time("validate", || as_written(&model, &origins, known, format, promise, watch))?;
+    let found = report.time("validate", || as_written(&model, &origins, known, format, promise, watch))?;
+    report.checked(found);
+    Ok(Outcome { model, origins, report })
+}
+
+/// The same for a result that has its attributes already.
+pub(crate) fn finish_model(
+    promise: Promise,
+    model: Model,
+    origins: Origins,
+    format: Format,
+    mut report: Report,
+    watch: &Watch,
+) -> Result<Outcome, Error> {
+    report.describe(&model.mesh, &origins);
+    let found = report.time("validate", || as_written(&model, &origins, &[], format, promise, watch))?;
+    report.checked(found);
     Ok(Outcome { model, origins, report })
 }
 

@@ -126,8 +126,9 @@ pub fn remesh(part: &Model, params: &Params, watch: &Watch) -> Result<Outcome, E
         measure(&base.mesh, &mut report);
     }
     report.describe(&base.mesh, &origins);
-    report.validity =
+    let found =
         report.time("validate", || as_written(&base, &origins, &[], params.format, Promise::Manifold, watch))?;
+    report.checked(found);
     Ok(Outcome { model: base, origins, report })
 }
 

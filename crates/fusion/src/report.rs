@@ -3,6 +3,7 @@
 use crate::blend::Method;
 use crate::choice::Source;
 use crate::diagnostic::{Diagnostic, Severity};
+use crate::inherited::Inherited;
 use mesh_core::{FaceOrigin, Faces, Origins, TriMesh, VertexOrigin};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -21,6 +22,9 @@ pub struct Report {
     pub output: Counts,
     /// What the result was found to be, in the coordinates that were written.
     pub validity: Validity,
+    /// Where the result crosses itself because its inputs do, by input.
+    #[serde(default)]
+    pub inherited: Vec<Inherited>,
     /// Vertices of the result that are an input vertex, bit for bit.
     pub kept_vertices: usize,
     /// Faces of the result that are not a whole input face.
@@ -74,7 +78,7 @@ pub struct Validity {
     pub manifold: Option<bool>,
     /// Without boundary.
     pub closed: Option<bool>,
-    /// How many pairs of faces meet where they should not.
+    /// How many pairs of faces meet where they should not, in the whole mesh.
     pub self_intersections: Option<usize>,
 }
 
@@ -131,6 +135,7 @@ impl Default for Report {
             inputs: vec![],
             output: Counts::default(),
             validity: Validity::default(),
+            inherited: vec![],
             kept_vertices: 0,
             changed_faces: 0,
             residuals: BTreeMap::new(),
@@ -160,6 +165,15 @@ impl Report {
             Severity::Error => {}
         }
         self.diagnostics.push(diagnostic);
+    }
+
+    /// Takes what a check found, and tells what the inputs brought along.
+    pub(crate) fn checked(&mut self, (validity, inherited): (Validity, Vec<Inherited>)) {
+        self.validity = validity;
+        for crossings in &inherited {
+            self.tell(Diagnostic::inherited(crossings));
+        }
+        self.inherited = inherited;
     }
 
     /// Runs `stage` and notes its time under `name`, whether or not it succeeds.

@@ -62,21 +62,19 @@ pub fn max_radius_of_each(
     watch: &Watch,
 ) -> Result<Vec<Option<ListedRadius>>, Error> {
     extent::check_box(mesh_core::bounds(mesh))?;
-    let mut cost = 0;
-    let due = |curve: &FeatureCurve| {
-        // A blend costs by its edges, and by a pass over the mesh.
-        let own = curve.halfedges.len() + mesh.face_count() / FACES;
-        let due = curve.halfedges.len() <= LONGEST && cost + own <= ALL;
-        cost += if due { own } else { 0 };
-        due
-    };
-    let due: Vec<bool> = curves.iter().map(due).collect();
-    let limit = |(curve, &due): (&FeatureCurve, &bool)| {
+    let chain = |curve: &FeatureCurve| BlendCurve { halfedges: curve.halfedges.clone(), closed: curve.closed };
+    let width = |curve: &FeatureCurve| {
         watch.step("radii", 0.0)?;
-        let chain = BlendCurve { halfedges: curve.halfedges.clone(), closed: curve.closed };
-        Ok(blend::listed_radius(mesh, &chain, due, watch)?)
+        Ok(blend::listed_radius(mesh, &chain(curve), false, watch)?)
     };
-    curves.par_iter().zip(&due).map(limit).collect()
+    let widths = curves.par_iter().map(width).collect::<Result<Vec<Option<ListedRadius>>, Error>>()?;
+    let mut cost = Cost::default();
+    let due: Vec<bool> = curves.iter().zip(&widths).map(|(curve, width)| cost.allows(mesh, curve, *width)).collect();
+    let limit = |((curve, width), &due): ((&FeatureCurve, &Option<ListedRadius>), &bool)| {
+        watch.step("radii", 0.0)?;
+        if due { Ok(blend::listed_radius(mesh, &chain(curve), true, watch)?) } else { Ok(*width) }
+    };
+    curves.par_iter().zip(&widths).zip(&due).map(limit).collect()
 }
 
 /// Most edges of a curve for which blends are tried in a list, and of all its curves.
@@ -84,6 +82,35 @@ const LONGEST: usize = 40;
 const ALL: usize = 400;
 /// So many faces of a mesh cost as much as one edge of a curve.
 const FACES: usize = 2000;
+/// The same in steps of the ball, each as long as its largest radius: between sides that are slivers it takes thousands.
+const MOST_STEPS: f64 = 200.0;
+const ALL_STEPS: f64 = 2000.0;
+
+/// What the curves of a list have cost so far.
+#[derive(Default)]
+struct Cost {
+    edges: usize,
+    steps: f64,
+}
+
+impl Cost {
+    /// Whether blends may be tried for one more curve, whose sides allow a ball of this radius.
+    fn allows(&mut self, mesh: &Connected<TriMesh>, curve: &FeatureCurve, width: Option<ListedRadius>) -> bool {
+        let Some(width) = width else { return false };
+        // A blend costs by its edges, and by a pass over the mesh.
+        let edges = curve.halfedges.len() + mesh.face_count() / FACES;
+        let steps = curve.length / width.radius;
+        let due = curve.halfedges.len() <= LONGEST
+            && self.edges + edges <= ALL
+            && steps <= MOST_STEPS
+            && self.steps + steps <= ALL_STEPS;
+        if due {
+            self.edges += edges;
+            self.steps += steps;
+        }
+        due
+    }
+}
 
 fn round_once(part: &Model, params: &Params, how: &blend::Params, watch: &Watch) -> Result<Outcome, Error> {
     let mut report = Report::new("blend", vec![Counts::of("", &part.mesh)]);

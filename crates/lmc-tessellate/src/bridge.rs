@@ -82,10 +82,17 @@ fn face_in_full_turn(p: &[u32], q: &[u32], faces: &[[u32; 3]]) -> Option<[u32; 3
 const MOST: usize = 400_000_000;
 
 /// The cheapest triangulation of a closed polygon by its own diagonals, of which `may_join` (by place in the polygon)
-/// names the admissible ones. `None` if there is none, or if it were sought among more than [`MOST`] triangles.
+/// names the admissible ones. `None` if there is none, or if it were sought among more than 4·10⁸ triangles.
 ///
 /// Interval dynamic programming; O(d·k) time for d admissible diagonals, k at each vertex.
-pub(crate) fn polygon(
+///
+/// ```
+/// // Of a square's two diagonals the cost decides.
+/// let dear = |t: [u32; 3]| if t.contains(&0) && t.contains(&2) { 2.0 } else { 1.0 };
+/// let faces = lmc_tessellate::polygon(&[0, 1, 2, 3], |_, _| true, &dear).unwrap();
+/// assert!(faces.iter().all(|f| f.contains(&1) && f.contains(&3)));
+/// ```
+pub fn polygon(
     corners: &[u32],
     may_join: impl Fn(usize, usize) -> bool,
     cost: &impl Fn([u32; 3]) -> f64,

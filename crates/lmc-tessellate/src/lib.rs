@@ -53,6 +53,7 @@ mod tessellate;
 mod tile;
 mod trim;
 
+pub use bridge::polygon;
 pub use error::Error;
 pub use grid::Field;
 pub use isosurface::isosurface;

@@ -6,7 +6,7 @@ use glam::DVec3;
 /// Why a mesh is not an oriented 2-manifold. Every offender is listed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "not an oriented 2-manifold: {} edges with more than two faces, {} edges whose two faces disagree in orientation, {} vertices whose faces do not form one fan, {} faces with a repeated corner, {} faces that name a missing vertex{}; repair with `convert --weld --orient --split`",
+    "not an oriented 2-manifold: {} edges with more than two faces, {} edges whose two faces disagree in orientation, {} vertices whose faces do not form one fan, {} faces with a repeated corner, {} faces that name a missing vertex{}; `repair` mends what can be mended",
     .edges.len(), .misoriented.len(), .vertices.len(), .degenerate.len(), .out_of_range.len(), first_place(self)
 )]
 pub struct NotManifold {

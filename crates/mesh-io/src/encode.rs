@@ -88,6 +88,9 @@ impl Target {
     }
 }
 
+/// What a material without a name is called where a file must name it.
+pub(crate) const UNNAMED: &str = "unnamed";
+
 /// A name that fits on one line of a text file.
 pub(crate) fn clean_name(name: &str) -> String {
     name.trim().chars().map(|c| if c.is_control() { '_' } else { c }).collect()

@@ -1,6 +1,7 @@
 //! What a mesh file holds: triangles, and the attributes that formats attach to them.
 
 use crate::error::At;
+use crate::unit::Unit;
 use glam::DVec3;
 use mesh_core::{CornerMap, FaceId, FaceMap, Faces, HalfedgeId, TriMesh, VertexId};
 use std::path::PathBuf;
@@ -26,6 +27,8 @@ pub struct Model {
     pub materials: Option<Materials>,
     /// The file's polygons, where any has more than three corners.
     pub polygons: Option<Polygons>,
+    /// The unit of the coordinates, where the file names one: 3MF does. Written to 3MF alone.
+    pub unit: Option<Unit>,
     /// What the reader changed or passed over.
     pub notes: Vec<Note>,
 }

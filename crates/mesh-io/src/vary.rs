@@ -56,6 +56,28 @@ pub(crate) fn per_vertex<T: Value>(mesh: &TriMesh, map: &CornerMap<T>) -> Option
     Some(values)
 }
 
+/// One colour per vertex: that of its corners, or the mean of those that have one; and at how many vertices they differ.
+/// [`Value::NONE`] where no corner has one.
+pub(crate) fn mean_per_vertex(mesh: &TriMesh, map: &CornerMap<[f64; 4]>) -> (Vec<[f64; 4]>, usize) {
+    let corners = || mesh.faces.iter().flatten().zip(map.as_slice()).filter(|(_, color)| !color.is_none());
+    let mut first = vec![<[f64; 4]>::NONE; mesh.positions.len()];
+    let mut differs = vec![false; mesh.positions.len()];
+    for (v, &color) in corners() {
+        if first[v.index()].is_none() {
+            first[v.index()] = color;
+        }
+        differs[v.index()] |= first[v.index()].bits() != color.bits();
+    }
+    let mut sums = vec![([0.0; 4], 0.0); mesh.positions.len()];
+    for (v, &color) in corners().filter(|(v, _)| differs[v.index()]) {
+        let (sum, count) = &mut sums[v.index()];
+        *sum = [0, 1, 2, 3].map(|k| sum[k] + color[k]);
+        *count += 1.0;
+    }
+    let mean = |v: usize| if differs[v] { sums[v].0.map(|x| x / sums[v].1) } else { first[v] };
+    ((0..first.len()).map(mean).collect(), differs.iter().filter(|&&d| d).count())
+}
+
 /// One value per face, if the three corners of every face agree.
 pub(crate) fn per_face<T: Value>(mesh: &TriMesh, map: &CornerMap<T>) -> Option<Vec<T>> {
     mesh.face_ids()

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use mesh_core::{CornerMap, FaceMap, Faces, TriMesh, VertexId, shapes};
 use mesh_io::{
-    Format, Groups, Material, Materials, Model, Polygons, Texture, TextureSource, as_written, read, read_stream,
+    Format, Groups, Material, Materials, Model, Polygons, Texture, TextureSource, Unit, as_written, read, read_stream,
     to_bytes, weld_exact, weld_within, write,
 };
 use proptest::prelude::*;
@@ -210,6 +210,62 @@ fn as_written_shows_what_rounding_folds() {
     let mut broken = Model::from(shapes::cuboid(DVec3::ONE));
     broken.mesh.faces[3][1] = VertexId(99);
     assert!(to_bytes(&broken, Format::Off).is_err());
+}
+
+/// A vertex between faces of two colours has their mean; faces without colour do not take that of their neighbours.
+#[test]
+fn colours_that_vary_at_a_vertex_are_averaged() {
+    let mesh = shapes::cuboid(DVec3::ONE);
+    let (red, blue, none) = ([1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0], [f64::NAN; 4]);
+    // Corner by corner, so that no face is of one colour; vertex 0 has both, vertex 1 red or nothing.
+    let of = |c: usize, v: VertexId| match v.0 {
+        0 => [red, blue][c % 2],
+        1 => [red, none][c % 2],
+        _ => blue,
+    };
+    let colors: Vec<_> = mesh.faces.iter().flatten().enumerate().map(|(c, &v)| of(c, v)).collect();
+    let own: Vec<_> = mesh.faces.iter().flatten().zip(&colors).filter(|(v, _)| v.0 == 0).map(|(_, c)| *c).collect();
+    let mean = own.iter().map(|c| c[0]).sum::<f64>() / own.len() as f64;
+    assert!(mean > 0.0 && mean < 1.0);
+    let model = Model { colors: Some(colors.into()), ..Model::from(mesh) };
+    for (format, tolerance) in [(Format::Obj, 1e-12), (Format::Ply, 0.5 / 255.0)] {
+        let back = through(&model, format);
+        for (&v, color) in back.mesh.faces.iter().flatten().zip(back.colors.unwrap().as_slice()) {
+            let wanted = [mean, 1.0, 0.0][v.index().min(2)];
+            assert!(
+                (color[0] - wanted).abs() <= tolerance && (color[2] - (1.0 - wanted)).abs() <= tolerance,
+                "{format}"
+            );
+        }
+    }
+}
+
+/// No file names a material with nothing.
+#[test]
+fn materials_have_names() {
+    let mesh = shapes::cuboid(DVec3::ONE);
+    let list = vec![Material { name: "m".into(), ..Material::default() }, Material::default()];
+    for of_face in [vec![0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1], vec![1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0]] {
+        let leads = of_face[0] == 1;
+        let materials = Materials { of_face: of_face.into(), list: list.clone() };
+        let model = Model { materials: Some(materials), ..Model::from(mesh.clone()) };
+        let text = String::from_utf8(to_bytes(&model, Format::Obj).unwrap()).unwrap();
+        assert!(text.lines().all(|line| line.trim() != "usemtl"), "{text}");
+        let names = |format| through(&model, format).materials.unwrap().list.into_iter().map(|m| m.name);
+        // At the start of an OBJ file faces need no material.
+        assert_eq!(names(Format::Obj).any(|name| name.is_empty()), leads);
+        assert!(names(Format::ThreeMf).all(|name| !name.is_empty()));
+        assert!(!String::from_utf8_lossy(&to_bytes(&model, Format::Glb).unwrap()).contains("\"name\":\"\""));
+    }
+}
+
+/// A model in inches stays one.
+#[test]
+fn units_survive_3mf() {
+    let model = Model { unit: Some(Unit::Inch), ..Model::from(shapes::cuboid(DVec3::ONE)) };
+    let back = through(&model, Format::ThreeMf);
+    assert_eq!((back.unit, bits(&back)), (Some(Unit::Inch), bits(&model)));
+    assert_eq!(through(&Model { unit: None, ..model }, Format::ThreeMf).unit, Some(Unit::Millimeter));
 }
 
 fn textured() -> Model {

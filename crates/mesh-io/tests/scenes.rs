@@ -233,7 +233,7 @@ fn packages_place_components_and_colors() {
     let colors = model.colors.unwrap();
     assert_eq!(colors.as_slice()[6..9], [[1., 0., 0., 0.], [0., 1., 0., 1.], [0., 1., 0., 1.]]);
     assert_eq!(model.groups.unwrap().names, ["tri", ""]);
-    assert!(model.notes[0].what.contains("unit (inch)"));
+    assert_eq!(model.unit, Some(mesh_io::Unit::Inch));
 }
 
 #[test]

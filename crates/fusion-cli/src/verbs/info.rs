@@ -50,7 +50,7 @@ fn table(name: &str, info: &Info) -> String {
     let state = match (info.manifold, info.closed) {
         (true, true) => "closed, oriented 2-manifold",
         (true, false) => "open, oriented 2-manifold",
-        _ => "no oriented 2-manifold; `convert --weld --orient --split` may mend it",
+        _ => "no oriented 2-manifold; `repair` may mend it",
     };
     row("validity", state.into());
     if let Some(n) = info.self_intersections {

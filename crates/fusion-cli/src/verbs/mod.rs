@@ -17,6 +17,7 @@ pub mod man;
 pub mod pose;
 pub mod remesh;
 pub mod render;
+pub mod repair;
 pub mod run;
 pub mod schema;
 pub mod sharpen;

@@ -9,7 +9,7 @@ use mesh_io::{Format, Model};
 use std::fs;
 
 /// Every verb, IN being the broken file; the others are sound.
-const VERBS: [&str; 22] = [
+const VERBS: [&str; 23] = [
     "info IN",
     "info IN --json",
     "convert IN -o out.ply",
@@ -28,6 +28,7 @@ const VERBS: [&str; 22] = [
     "compose IN cap.ply -o out.ply --method montage",
     "detail IN -o out.ply --target near=1,0,0,0.8 --source near=-1,0,0,0.9",
     "cluster IN -o out.ply",
+    "repair IN -o out.ply --holes fill",
     "remesh IN -o out.ply --edge-length 0.3",
     "remesh IN -o out.ply --smooth taubin",
     "render IN -o out.png --size 48",

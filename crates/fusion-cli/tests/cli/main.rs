@@ -13,6 +13,7 @@ mod drawings;
 mod exit_codes;
 mod memory;
 mod picking;
+mod repairs;
 mod reports;
 mod sharpens;
 mod support;

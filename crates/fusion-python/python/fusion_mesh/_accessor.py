@@ -13,7 +13,7 @@ import fusion_mesh
 
 from . import _functions
 
-_ONE = ("blend", "sharpen", "cut", "detail", "cluster", "remesh", "pose")
+_ONE = ("blend", "sharpen", "cut", "detail", "cluster", "remesh", "repair", "pose")
 _SEVERAL = ("union", "difference", "intersection", "compose")
 
 

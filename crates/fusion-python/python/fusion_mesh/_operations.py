@@ -19,6 +19,7 @@ __all__ = [
     "intersection",
     "pose",
     "remesh",
+    "repair",
     "sharpen",
     "union",
 ]
@@ -976,6 +977,76 @@ def remesh(
         "smooth": smooth,
     }
     return run("remesh", [mesh], ["mesh"], options, precision, threads, progress)
+
+
+def repair(
+    mesh: MeshLike,
+    *,
+    gap: Length = "0.001%",
+    holes: Literal["refuse", "fill", "keep"] = "refuse",
+    skip: Union[Literal["weld", "flat", "duplicates", "cracks", "orient", "split"], Sequence[Literal["weld", "flat", "duplicates", "cracks", "orient", "split"]]] = (),
+    specks: Optional[Length] = None,
+    weld: Length = 0.0,
+    precision: Literal["f64", "f32"] = "f64",
+    threads: Optional[int] = None,
+    progress: Progress = None,
+) -> Result:
+    """Make a mesh a solid: weld, orient, split, drop what has no area, close cracks, fill holes.
+
+    Parameters
+    ----------
+    mesh : mesh-like
+        Anything that `as_mesh` takes.
+    gap : length, default 0.001%
+        Close cracks up to this width: boundary edges that nearly coincide become one.
+    holes : refuse, fill, keep, default refuse
+        What becomes of holes.
+    skip : list of weld, flat, duplicates, cracks, orient, split, optional
+        Leave out this step; may be given more than once.
+    specks : length, optional
+        Drop components whose bounding box has a diagonal below this.
+    weld : length, default 0
+        Merge vertices no further apart than this; 0 merges those at the same place.
+    precision : f64 or f32, default f64
+        The coordinates in which the result must be sound: ``"f32"`` for one that goes into STL or glTF.
+    threads : int, optional
+        Number of threads; all processors where not given. The result has the same bits for any number.
+    progress : callable or bool, optional
+        Called with a stage's name and the share of it that is done; ends the job by an exception or by returning ``False``.
+        ``True`` shows a bar.
+
+    Returns
+    -------
+    Result
+        The mesh, the report, and where every vertex and face came from.
+
+    Raises
+    ------
+    UsageError
+        An option has a value that it cannot have.
+    InputError
+        A mesh is not one, or a file cannot be read.
+    InfeasibleError
+        It is impossible on this input; says where and why.
+    InvalidResultError
+        The result failed its own validation.
+
+    Examples
+    --------
+    >>> import fusion_mesh as fm
+    >>> box = fm.box((1, 1, 1))
+    >>> soup = fm.Mesh(box.vertices[box.faces].reshape(-1, 3), range(36))
+    >>> round(fm.info(fm.repair(soup))["volume"], 9)
+    1.0
+    """
+    options: Dict[str, Any] = {
+        "gap": gap,
+        "holes": holes,
+        "skip": skip,
+        "specks": specks,
+        "weld": weld,
+    }
+    return run("repair", [mesh], ["mesh"], options, precision, threads, progress)
 
 
 def pose(

@@ -16,7 +16,7 @@ pub use file::{Degrees, Entry, FileError, MoveEntry, clusters_from_toml};
 
 use crate::outcome::{Outcome, finish};
 use crate::{Counts, Error, Report, extent};
-use edge_cluster::{Blend, Part, Place, Polyhedron, Shape, blend, contact_slopes, cover};
+use edge_cluster::{Blend, Part, Place, Polyhedron, Shape, blend, check_budget, contact_slopes, cover};
 use mesh_core::{FaceOrigin, Origins, VertexId, VertexOrigin, Watch};
 use mesh_io::{Format, Groups, Model};
 
@@ -105,7 +105,10 @@ pub fn cluster(part: &Model, params: &Params, watch: &Watch) -> Result<Clustered
     let solid = report.time("polyhedron", || Polyhedron::new(&part.mesh, polygon_of, &params.polyhedron))?;
     let specs = match &params.clusters {
         Some(specs) => specs.clone(),
-        None => report.time("cover", || choose(&solid, &params.cover, &mut notes)),
+        None => {
+            check_budget(&solid, &params.patch)?;
+            report.time("cover", || choose(&solid, &params.cover, &mut notes))
+        }
     };
     report.notes = notes;
     let mut last = None;

@@ -3,13 +3,14 @@
 use super::Error;
 use super::table::read;
 use crate::operation::{
-    Blend, Boolean, Cluster, Compose, Cut, Detail, Files, OptionError, Options, Pose, Remesh, SetOperation, Sharpen,
+    Blend, Boolean, Cluster, Compose, Cut, Detail, Files, OptionError, Options, Pose, Remesh, Repair, SetOperation,
+    Sharpen,
 };
 use std::ops::Range;
 use toml::de::DeTable;
 
 /// Every verb of a step.
-pub(super) const VERBS: [&str; 11] = [
+pub(super) const VERBS: [&str; 12] = [
     "blend",
     "cluster",
     "compose",
@@ -19,6 +20,7 @@ pub(super) const VERBS: [&str; 11] = [
     "intersection",
     "pose",
     "remesh",
+    "repair",
     "sharpen",
     "union",
 ];
@@ -43,6 +45,8 @@ pub enum Action {
     Pose(Pose),
     /// See [`Remesh`].
     Remesh(Remesh),
+    /// See [`Repair`].
+    Repair(Repair),
     /// See [`Sharpen`].
     Sharpen(Sharpen),
 }
@@ -59,6 +63,7 @@ macro_rules! each {
             Action::Detail($operation) => $does,
             Action::Pose($operation) => $does,
             Action::Remesh($operation) => $does,
+            Action::Repair($operation) => $does,
             Action::Sharpen($operation) => $does,
         }
     };
@@ -73,7 +78,7 @@ macro_rules! from {
         }
     )+};
 }
-from! { Blend Boolean Cluster Compose Cut Detail Pose Remesh Sharpen }
+from! { Blend Boolean Cluster Compose Cut Detail Pose Remesh Repair Sharpen }
 
 impl Action {
     /// The verb, as `do` names it.
@@ -91,6 +96,7 @@ impl Action {
             Self::Detail(_) => Detail::NAME,
             Self::Pose(_) => Pose::NAME,
             Self::Remesh(_) => Remesh::NAME,
+            Self::Repair(_) => Repair::NAME,
             Self::Sharpen(_) => Sharpen::NAME,
         }
     }
@@ -152,6 +158,7 @@ impl Action {
             "detail" => read(text, whole, table, &[]).map(Self::Detail),
             "pose" => read(text, whole, table, &[]).map(Self::Pose),
             "remesh" => read(text, whole, table, &[]).map(Self::Remesh),
+            "repair" => read(text, whole, table, &[]).map(Self::Repair),
             "sharpen" => read(text, whole, table, &[]).map(Self::Sharpen),
             other => {
                 let told = Error::at(text, verb.1, format!("there is no operation `{other}`"));

@@ -3,7 +3,7 @@
 use crate::Report;
 use glam::DVec3;
 use mesh_core::{FaceId, FaceOrigin, Origins, TriMesh, VertexId, VertexOrigin};
-use mesh_io::{Groups, Material, Materials, Model, Polygons, Texture, TextureSource};
+use mesh_io::{Groups, Material, Materials, Model, Polygons, Texture, TextureSource, Unit};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -110,6 +110,7 @@ pub(super) fn put_model(out: &mut Vec<u8>, model: &Model) {
         put_ids(out, polygons.corners.iter().map(|v| v.0));
         put_ids(out, polygons.of_face.as_slice().iter().copied());
     });
+    put_some(out, model.unit.as_ref(), |out, unit| put_bytes(out, unit.name().as_bytes()));
 }
 
 fn put_material(out: &mut Vec<u8>, material: &Material) {
@@ -269,6 +270,7 @@ fn model(from: &mut Reader<'_>) -> Option<Model> {
             let (starts, corners) = (from.ids()?, from.ids()?.into_iter().map(VertexId).collect());
             Some(Polygons { starts, corners, of_face: from.ids()?.into() })
         })?,
+        unit: from.some(|from| Unit::from_name(&from.text()?))?,
         notes: vec![],
     })
 }

@@ -10,8 +10,7 @@ use super::table::Places;
 use super::task::{Place, Task};
 use super::{Document, key};
 use crate::operation::{Pose, Precision};
-use crate::validity::Promise;
-use crate::validity::as_written;
+use crate::validity::{Promise, as_written, crossings_of};
 use crate::{Counts, Error, Outcome, Report};
 use mesh_core::{Faces, Origins, Stage, Watch};
 use mesh_io::Model;
@@ -301,12 +300,16 @@ impl<'a> Run<'a> {
             }
         }
         report.describe(&shape.model.mesh, &shape.origins);
-        report.validity = if let Some(validity) = shape.validity {
-            validity
+        if let Some(validity) = shape.validity {
+            report.validity = validity;
+            // The step that made it has told them, by its own inputs.
+            if validity.self_intersections != Some(0) {
+                report.inherited = crossings_of(&shape.model.mesh, &shape.origins, self.watch)?;
+            }
         } else {
             let format = self.precision.into();
-            as_written(&shape.model, &shape.origins, &[], format, Promise::Manifold, self.watch)?
-        };
+            report.checked(as_written(&shape.model, &shape.origins, &[], format, Promise::Manifold, self.watch)?);
+        }
         Ok(Outcome { model: (*shape.model).clone(), origins: (*shape.origins).clone(), report })
     }
 }

@@ -1,8 +1,8 @@
 //! What every table of a document takes, as it stands in docs/documents.md.
 
 use crate::operation::{
-    Blend, Boolean, Cluster, Compose, Cut, Detail, On, OptionRow, Options, Pose, Primitive, Remesh, Rotation, Sharpen,
-    Snap, option_rows,
+    Blend, Boolean, Cluster, Compose, Cut, Detail, On, OptionRow, Options, Pose, Primitive, Remesh, Repair, Rotation,
+    Sharpen, Snap, option_rows,
 };
 use schemars::JsonSchema;
 use std::fmt::Write;
@@ -55,6 +55,7 @@ pub fn reference() -> String {
     operation::<Detail>(&mut text);
     operation::<Cluster>(&mut text);
     operation::<Remesh>(&mut text);
+    operation::<Repair>(&mut text);
     text.push('\n');
     text
 }

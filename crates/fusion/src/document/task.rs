@@ -16,6 +16,7 @@ use crate::join::join_from;
 use crate::operation::{Compose, Creases, Detail, Linked, LoopName, OptionError, Pose, Precision, RegionArg, Solid};
 use crate::pose::pose;
 use crate::pose::similarity::Similarity;
+use crate::repair::repair;
 use crate::{Outcome, remeshing, round, sharpen};
 use mesh_core::{Bounds, FaceOrigin, Faces, Watch, bounds};
 use mesh_io::Model;
@@ -98,6 +99,7 @@ impl Task {
             },
             Action::Sharpen(operation) => sharpen::sharpen(first, &operation.params(diagonal, format)?, watch),
             Action::Cluster(operation) => Ok(cluster(first, &operation.params(format)?, watch)?.outcome),
+            Action::Repair(operation) => repair(first, &operation.params(diagonal, format)?, watch),
             Action::Remesh(operation) => remeshing::remesh(first, &operation.params(diagonal, format)?, watch),
             Action::Detail(operation) => {
                 let number = |part: Option<&str>| part.and_then(|part| part.parse().ok()).unwrap_or(0);

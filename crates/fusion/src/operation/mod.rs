@@ -13,7 +13,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `blend.rs`, `boolean.rs`, `cluster.rs`, `compose.rs`, `cut.rs`, `detail.rs`, `pose.rs`, `remesh.rs`, `sharpen.rs` | the operations |
+//! | `blend.rs`, `boolean.rs`, `cluster.rs`, `compose.rs`, `cut.rs`, `detail.rs`, `pose.rs`, `remesh.rs`, `repair.rs`, `sharpen.rs` | the operations |
 //! | `rolling.rs` | options that the two share |
 //! | `length.rs`, `place.rs`, `primitive.rs`, `section.rs`, `region.rs`, `region_of.rs`, `silhouette.rs`, `smoothing.rs`, `linked.rs`, `words.rs`, `precision.rs` | what options take |
 //! | `option_error.rs` | what is wrong with an option |
@@ -38,6 +38,7 @@ mod primitive;
 mod region;
 mod region_of;
 mod remesh;
+mod repair;
 mod rolling;
 mod schema;
 mod section;
@@ -63,6 +64,7 @@ pub use primitive::{On, Primitive, PrimitiveShape, Radii, Rotation, Snap};
 pub use region::RegionArg;
 pub use region_of::{Curve, RegionOf};
 pub use remesh::Remesh;
+pub use repair::{Holes, Repair, RepairStep};
 pub use rolling::{Overlap, Spine, Surface};
 pub use schema::{OptionRow, option_rows, schema};
 pub use section::{ProfileAt, Section, SectionCurve};

@@ -2,7 +2,7 @@
 
 use super::option_error::short;
 use super::options::Options;
-use super::{Blend, Boolean, Cluster, Compose, Cut, Detail, Pose, Primitive, Remesh, Sharpen};
+use super::{Blend, Boolean, Cluster, Compose, Cut, Detail, Pose, Primitive, Remesh, Repair, Sharpen};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
@@ -25,6 +25,7 @@ pub fn schema() -> Value {
     add(Detail::NAME, generator.subschema_for::<Detail>());
     add(Pose::NAME, generator.subschema_for::<Pose>());
     add(Remesh::NAME, generator.subschema_for::<Remesh>());
+    add(Repair::NAME, generator.subschema_for::<Repair>());
     add(Sharpen::NAME, generator.subschema_for::<Sharpen>());
     generator.subschema_for::<Primitive>();
     let mut definitions = generator.take_definitions(true);

@@ -5,7 +5,8 @@ use fusion::features::{self, feature_curves};
 use fusion::mesh_core::{
     Adjacency, Connected, Faces, HalfedgeId, Positions, TriMesh, Watch, area, shapes, triangle_normal, validate,
 };
-use fusion::{Info, Region, Repair, compose, detail, detail_transfer, remeshing, repair};
+use fusion::repair::{Step, apply_steps};
+use fusion::{Info, Region, compose, detail, detail_transfer, remeshing};
 use glam::{DQuat, DVec3};
 use mesh_io::{Format, Model};
 use proptest::prelude::*;
@@ -102,7 +103,7 @@ proptest! {
         let soup = TriMesh::from_arrays(points.into_iter().map(DVec3::from).collect(), faces);
         let info = Info::of(&soup, &Watch::default()).unwrap();
         prop_assert_eq!((info.vertices, info.faces), (soup.positions.len(), soup.faces.len()));
-        let mended = repair(&Model::from(soup), &[Repair::Weld(0.0), Repair::Orient, Repair::Split]).model.mesh;
+        let mended = apply_steps(&Model::from(soup), &[Step::Weld(0.0), Step::Orient, Step::Split], &Watch::default()).unwrap().model.mesh;
         let after = Info::of(&mended, &Watch::default()).unwrap();
         prop_assert!(after.manifold == mended.faces.iter().all(|[a, b, c]| a != b && b != c && c != a), "{:?}", after.defects);
     }

@@ -306,7 +306,7 @@ fn looks(
         };
         let opaque = material.base_color[3] >= 1.0;
         document.materials.push(json::Material {
-            name: Some(material.name.clone()),
+            name: Some(material.name.clone()).filter(|name| !name.is_empty()),
             pbr_metallic_roughness: pbr,
             alpha_mode: Valid(if opaque { AlphaMode::Opaque } else { AlphaMode::Blend }),
             ..json::Material::default()

@@ -86,6 +86,7 @@ pub(crate) fn read(bytes: &[u8], folder: &Folder, notes: &mut Notes) -> Result<M
         materials: materials.map(|list| Materials { of_face: cut.gather_faces(&labels.material_of).into(), list }),
         polygons: cut.polygons,
         mesh: cut.mesh,
+        unit: None,
         notes: vec![],
     })
 }

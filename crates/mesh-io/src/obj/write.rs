@@ -1,11 +1,11 @@
 //! Writes OBJ with its material library.
 
 use super::mtl;
-use crate::encode::{Content, Encoded, Side, Target, distinct_names, in_pieces};
-use crate::model::Model;
+use crate::encode::{Content, Encoded, Side, Target, UNNAMED, clean_name, distinct_names, in_pieces};
+use crate::model::{Material, Materials, Model};
 use crate::number::{push_f64, push_u64};
 use crate::outline::Outline;
-use crate::vary::{Value, distinct, per_vertex};
+use crate::vary::{Value, distinct, mean_per_vertex};
 use mesh_core::CornerMap;
 
 /// Values that corners refer to by number, from 1; 0 for none.
@@ -18,7 +18,8 @@ struct Pool<T> {
 /// there is no material library and materials go by name only.
 pub(crate) fn encode(model: &Model, target: Option<&Target>) -> Encoded {
     let mut encoded = Encoded::default();
-    let material_names = distinct_names(model.materials.iter().flat_map(|m| &m.list).map(|m| &m.name));
+    let named = model.materials.as_ref().map(named);
+    let material_names = distinct_names(named.iter().flatten());
     if let (Some(materials), Some(target)) = (&model.materials, target) {
         let pictures = target.pictures(&materials.list, &mut encoded.sides);
         let name = format!("{}.mtl", target.stem);
@@ -27,10 +28,11 @@ pub(crate) fn encode(model: &Model, target: Option<&Target>) -> Encoded {
         encoded.sides.push(Side { name, content: Content::Bytes(bytes) });
     }
 
-    let colors = model.colors.as_ref().and_then(|colors| per_vertex(&model.mesh, colors));
-    if model.colors.is_some() && colors.is_none() {
-        encoded.notes.add("colours dropped, since OBJ holds one per vertex", model.mesh.faces.len(), None);
-    }
+    let colors = model.colors.as_ref().map(|colors| mean_per_vertex(&model.mesh, colors));
+    let colors = colors.map(|(colors, mixed)| {
+        encoded.notes.add("vertices with the mean of several colours, since OBJ holds one per vertex", mixed, None);
+        colors
+    });
     encoded.body.extend(in_pieces(model.mesh.positions.len(), |i, out| {
         push_row(out, b"v", &model.mesh.positions[i].to_array());
         if let Some(color) = colors.as_ref().map(|c| c[i]).filter(|c| !c.is_none()) {
@@ -89,6 +91,20 @@ pub(crate) fn encode(model: &Model, target: Option<&Target>) -> Encoded {
         out.push(b'\n');
     }));
     encoded
+}
+
+/// The names of materials. The nameless one stays so only where no statement has to name it: at the start of the file.
+fn named(materials: &Materials) -> Vec<String> {
+    let first = materials.of_face.as_slice().first().map_or(0, |&m| m as usize);
+    let starts = materials.of_face.as_slice().chunk_by(|a, b| a == b).filter(|run| run[0] as usize == first).count();
+    let name = |(i, material): (usize, &Material)| {
+        if clean_name(&material.name).is_empty() && (i != first || starts > 1) {
+            UNNAMED.to_string()
+        } else {
+            material.name.clone()
+        }
+    };
+    materials.list.iter().enumerate().map(name).collect()
 }
 
 /// The label that needs no statement at the start of a file: the empty name, if there is one.

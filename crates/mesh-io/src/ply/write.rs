@@ -3,7 +3,7 @@
 use crate::encode::{Encoded, Target, in_pieces};
 use crate::model::Model;
 use crate::outline::Outline;
-use crate::vary::{Value, per_face, per_vertex};
+use crate::vary::{Value, mean_per_vertex, per_face, per_vertex};
 use std::fmt::Write;
 
 const RGBA: [&str; 4] = ["red", "green", "blue", "alpha"];
@@ -15,18 +15,18 @@ pub(crate) fn encode(model: &Model, target: Option<&Target>) -> Encoded {
     let uvs = model.uvs.as_ref().and_then(|m| per_vertex(mesh, m));
     let corner_uvs = model.uvs.as_ref().filter(|_| uvs.is_none());
     let normals = model.normals.as_ref().and_then(|m| per_vertex(mesh, m));
-    let colors = model.colors.as_ref().and_then(|m| per_vertex(mesh, m));
-    let face_colors = model.colors.as_ref().filter(|_| colors.is_none()).and_then(|m| per_face(mesh, m));
+    let means = model.colors.as_ref().map(|m| mean_per_vertex(mesh, m));
+    let face_colors = means.as_ref().filter(|m| m.1 > 0).and_then(|_| per_face(mesh, model.colors.as_ref()?));
+    let colors = means.filter(|_| face_colors.is_none());
+    let mixed = colors.as_ref().map_or(0, |m| m.1);
+    let colors = colors.map(|m| m.0);
+    encoded.notes.add("vertices with the mean of several colours, since PLY holds one per vertex or face", mixed, None);
     let texture = model.materials.as_ref().filter(|m| m.list.len() == 1 && m.list[0].texture.is_some()).and_then(|m| {
         let target = target?;
         target.pictures(&m.list, &mut encoded.sides).pop().flatten()
     });
     let lost = [
         (model.normals.is_some() && normals.is_none(), "normals dropped, since PLY holds one per vertex"),
-        (
-            model.colors.is_some() && colors.is_none() && face_colors.is_none(),
-            "colours dropped, since they vary within faces",
-        ),
         (model.groups.is_some(), "group names dropped, since PLY has none"),
         (model.materials.is_some() && texture.is_none(), "materials dropped, since PLY has none"),
     ];

@@ -5,6 +5,7 @@ use super::package::Package;
 use crate::error::Fault;
 use crate::model::{Groups, Material, Materials, Model};
 use crate::notes::Notes;
+use crate::unit::Unit;
 use glam::DMat4;
 use mesh_core::VertexId;
 use std::collections::BTreeMap;
@@ -14,20 +15,21 @@ const MAX_ELEMENTS: usize = 1 << 25;
 const MAX_VISITS: usize = 1 << 20;
 const MAX_DEPTH: usize = 64;
 
-/// Reads a 3MF package. Coordinates stay in the file's unit, which a note tells unless it is the millimetre.
+/// Reads a 3MF package. Coordinates stay in the file's unit, which the model names.
 /// O(size of what is built).
 pub(crate) fn read(bytes: &[u8], notes: &mut Notes) -> Result<Model, Fault> {
     let mut package = Package::open(bytes)?;
     let root = package.root_model()?;
     let mut builder = Builder { package, documents: BTreeMap::new(), parts: Parts::default() };
     let root = builder.load(&root, notes)?;
-    let unit = builder.documents[&root].unit.clone().unwrap_or_else(|| "millimeter".into());
-    if unit != "millimeter" {
-        notes.add(&format!("coordinates left in the file's unit ({})", crate::encode::clean_name(&unit)), 1, None);
+    let name = builder.documents[&root].unit.clone();
+    let unit = name.as_deref().map_or(Some(Unit::Millimeter), Unit::from_name);
+    if let (None, Some(name)) = (unit, name) {
+        notes.add(&format!("unknown unit ({}) taken for the millimetre", crate::encode::clean_name(&name)), 1, None);
     }
     let items = builder.documents[&root].build.clone();
     builder.build(&root, &items, notes)?;
-    Ok(builder.parts.into_model(notes))
+    Ok(Model { unit, ..builder.parts.into_model(notes) })
 }
 
 struct Builder<'a> {

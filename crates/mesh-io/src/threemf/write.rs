@@ -1,6 +1,6 @@
 //! Writes 3MF: one object, built where it stands.
 
-use crate::encode::{Encoded, clean_name, in_pieces};
+use crate::encode::{Encoded, UNNAMED, clean_name, in_pieces};
 use crate::model::Model;
 use crate::number::{push_f64, push_u64};
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
 "#;
 
-/// The bytes of a 3MF package, in millimetres. Positions print as the shortest decimals that read back bit for bit.
+/// The bytes of a 3MF package, in the model's unit or else in millimetres. Positions print as the shortest decimals that read back bit for bit.
 pub(crate) fn encode(model: &Model) -> Encoded {
     let mut encoded = Encoded::default();
     let text = model_text(model, &mut encoded);
@@ -61,8 +61,9 @@ fn model_text(model: &Model, encoded: &mut Encoded) -> Vec<Vec<u8>> {
         encoded.notes.add(what, 1, None);
     }
 
-    let mut head = String::from(concat!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xml:lang=\"en-US\" ",
+    let unit = model.unit.unwrap_or_default().name();
+    let mut head = format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"{unit}\" xml:lang=\"en-US\" ");
+    head.push_str(concat!(
         "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" ",
         "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">\n<resources>\n"
     ));
@@ -70,7 +71,8 @@ fn model_text(model: &Model, encoded: &mut Encoded) -> Vec<Vec<u8>> {
         head.push_str("<basematerials id=\"1\">\n");
         for material in &materials.list {
             let color = hex(bytes_of(material.base_color));
-            let _ = writeln!(head, "<base name=\"{}\" displaycolor=\"{color}\"/>", escaped(&material.name));
+            let name = if clean_name(&material.name).is_empty() { UNNAMED } else { &material.name };
+            let _ = writeln!(head, "<base name=\"{}\" displaycolor=\"{color}\"/>", escaped(name));
         }
         head.push_str("</basematerials>\n");
     }
