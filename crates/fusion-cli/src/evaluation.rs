@@ -61,6 +61,8 @@ pub fn whole(document: &Document, path: &Path, evaluation: &Evaluation) -> Repor
         report.warnings = steps().flat_map(|r| r.warnings.clone()).collect();
         report.notes = steps().flat_map(|r| r.notes.clone()).collect();
         report.diagnostics = steps().flat_map(|r| r.diagnostics.clone()).collect();
+        let of_outputs = evaluation.outputs.iter().flat_map(|o| &o.outcome.report.diagnostics);
+        of_outputs.filter(|d| d.code == Code::Inherited).for_each(|d| report.tell(d.clone()));
     }
     for name in document.unused_parameters() {
         let told = format!("{}: nothing refers to the parameter `{name}`", path.display());

