@@ -75,7 +75,7 @@ fn dispatch(session: &Session, verb: Verb) -> Result<(), Failure> {
     match verb {
         Verb::Info(args) => verbs::info::run(session, &args),
         Verb::Convert(args) => verbs::convert::run(session, &args),
-        Verb::Repair(args) => verbs::repair::run(session, args),
+        Verb::Repair(args) => verbs::repair::run(session, &args),
         Verb::Features(args) => verbs::features::run(session, &args),
         Verb::Union(args) => verbs::boolean::run(session, args, SetOperation::Union),
         Verb::Difference(args) => verbs::boolean::run(session, args, SetOperation::Difference),

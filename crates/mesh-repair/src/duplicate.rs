@@ -43,7 +43,9 @@ fn worth_keeping(groups: &[&[([VertexId; 3], FaceId)]], balanced: &[usize]) -> V
     };
     let mut at: FxHashMap<[VertexId; 2], (Vec<usize>, usize)> = FxHashMap::default();
     for (place, &g) in balanced.iter().enumerate() {
-        edges(g).into_iter().for_each(|e| at.entry(e).or_default().0.push(place));
+        for e in edges(g) {
+            at.entry(e).or_default().0.push(place);
+        }
     }
     for g in (0..groups.len()).filter(|g| balanced.binary_search(g).is_err()) {
         for e in edges(g) {
@@ -74,7 +76,9 @@ fn worth_keeping(groups: &[&[([VertexId; 3], FaceId)]], balanced: &[usize]) -> V
                 }
             }
         }
-        patch.into_iter().for_each(|place| decided[place] = Some(votes >= 0));
+        for place in patch {
+            decided[place] = Some(votes >= 0);
+        }
     }
     decided.into_iter().map(|d| d == Some(true)).collect()
 }
@@ -86,5 +90,5 @@ fn sorted(mut corners: [VertexId; 3]) -> [VertexId; 3] {
 
 /// Whether corners are a rotation of their ascending order.
 fn is_even([a, b, c]: [VertexId; 3]) -> bool {
-    (a < b) as u8 + (b < c) as u8 + (c < a) as u8 == 2
+    [a < b, b < c, c < a].into_iter().filter(|up| *up).count() == 2
 }

@@ -148,7 +148,9 @@ fn assembled(mesh: &Connected<TriMesh>, patches: &[Option<&Patch>]) -> (TriMesh,
         let first = whole.positions.len();
         let inner = &patch.mesh.positions[patch.rim.len()..];
         whole.positions.extend_from_slice(inner);
-        inner.iter().for_each(|_| origins.vertices.push(VertexOrigin::New { stage: STAGE }));
+        for _ in inner {
+            origins.vertices.push(VertexOrigin::New { stage: STAGE });
+        }
         for f in &patch.mesh.faces {
             let name = |v: VertexId| match patch.rim.get(v.index()) {
                 Some(&own) => own,

@@ -35,7 +35,7 @@ impl Patch {
         let taken = edges_within(mesh, &rim);
         let stride = if n <= ALL_DIAGONALS { 1 } else { n.div_ceil(ALL_DIAGONALS / 2) };
         let may_join = |i: usize, j: usize| {
-            let coarse = i % stride == 0 && j % stride == 0;
+            let coarse = i.is_multiple_of(stride) && j.is_multiple_of(stride);
             let fine = i / stride == (j - 1) / stride;
             (coarse || fine) && !taken.contains(&[i.min(j), i.max(j)])
         };

@@ -72,7 +72,9 @@ impl Plain {
                 next += 1;
             }
             if members.len() >= SMALLEST && is_one_to_one(mesh, &members, axis, way) {
-                members.iter().for_each(|f| patch[f.index()] = seed.0);
+                for f in members {
+                    patch[f.index()] = seed.0;
+                }
             }
         }
         Self { patch }

@@ -24,7 +24,7 @@ pub struct RepairArgs {
 }
 
 /// Repairs the input, tells what each step mended, and writes the result.
-pub fn run(session: &Session, args: RepairArgs) -> Result<(), Failure> {
+pub fn run(session: &Session, args: &RepairArgs) -> Result<(), Failure> {
     args.repair.validate().map_err(|e| wrong(&e))?;
     let destination = Destination::check(&args.target, session)?;
     let models = [session.read(&args.input, &args.source)?];
@@ -37,7 +37,9 @@ pub fn run(session: &Session, args: RepairArgs) -> Result<(), Failure> {
     session.write(&destination, &outcome.model, Some(&outcome.origins), &outcome.report)?;
     // With --verbose they are among the notes.
     if !session.common().verbose {
-        lines.iter().for_each(|line| session.tell(line));
+        for line in &lines {
+            session.tell(line);
+        }
     }
     if lines.is_empty() {
         session.tell("nothing to repair");

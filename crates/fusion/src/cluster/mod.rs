@@ -103,12 +103,11 @@ pub fn cluster(part: &Model, params: &Params, watch: &Watch) -> Result<Clustered
     let mut notes = vec![];
     let polygon_of = part.polygons.as_ref().filter(|p| p.fit(&part.mesh)).map(|p| p.of_face.as_slice());
     let solid = report.time("polyhedron", || Polyhedron::new(&part.mesh, polygon_of, &params.polyhedron))?;
-    let specs = match &params.clusters {
-        Some(specs) => specs.clone(),
-        None => {
-            check_budget(&solid, &params.patch)?;
-            report.time("cover", || choose(&solid, &params.cover, &mut notes))
-        }
+    let specs = if let Some(specs) = &params.clusters {
+        specs.clone()
+    } else {
+        check_budget(&solid, &params.patch)?;
+        report.time("cover", || choose(&solid, &params.cover, &mut notes))
     };
     report.notes = notes;
     let mut last = None;

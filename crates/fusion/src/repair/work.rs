@@ -45,7 +45,9 @@ impl<'a> Work<'a> {
             let told = Diagnostic::new(Code::Repaired, Severity::Note, format!("{name}: {count} {what}"));
             self.report.tell(told.with("count", count as f64));
         }
-        left.into_iter().for_each(|warning| self.report.tell(warning));
+        for warning in left {
+            self.report.tell(warning);
+        }
         Ok(count)
     }
 }

@@ -115,7 +115,9 @@ pub(crate) fn by_zones(
     let mut best = best.blended;
     for released in std::iter::once(zones.concat()).chain(each) {
         let mut eased = plan.clone();
-        released.iter().for_each(|&span| eased.release(span));
+        for &span in &released {
+            eased.release(span);
+        }
         match candidate(&mut eased, &mut spent, &shrinking, watch) {
             Ok(made) if made.blended.full_share >= best.full_share - DEARER => {
                 (best, plan) = (made.blended, eased);
