@@ -7,7 +7,7 @@ import { verbIcon } from '../icons';
 import type { Store } from '../store';
 
 /** The order in which verbs stand; those that the schema has besides follow. */
-const ORDER = ['union', 'difference', 'intersection', 'blend', 'sharpen', 'cut', 'compose', 'remesh', 'detail', 'cluster', 'pose'];
+const ORDER = ['union', 'difference', 'intersection', 'blend', 'sharpen', 'cut', 'compose', 'remesh', 'repair', 'detail', 'cluster', 'pose'];
 /** Verbs that need more than one shape. */
 const SEVERAL = ['union', 'difference', 'intersection'];
 
