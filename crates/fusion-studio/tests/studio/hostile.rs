@@ -245,10 +245,13 @@ fn a_client_that_goes_amid_an_evaluation_stops_nobody() {
         other.send(json!({ "do": "max_radius", "step": 0 }));
         drop(other);
     }
-    let version =
-        page.ok(json!({ "do": "set", "table": "step", "index": 0, "key": "radius", "value": 0.17 }))["version"].clone();
-    let done = page.evaluated(&version);
-    assert!((done["steps"][0]["report"]["figures"]["radius"].as_f64().unwrap() - 0.17).abs() < 1e-12);
+    // What those clients sent may be heard after what the page sends: each of them at most once.
+    let radius = (0..6).map(|_| {
+        let set = json!({ "do": "set", "table": "step", "index": 0, "key": "radius", "value": 0.17 });
+        let version = page.ok(set)["version"].clone();
+        page.evaluated(&version)["steps"][0]["report"]["figures"]["radius"].as_f64().unwrap()
+    });
+    assert!(radius.into_iter().any(|radius| (radius - 0.17).abs() < 1e-12));
 }
 
 /// Whatever the moment: the page hears that it was stopped, or that it was done before.
