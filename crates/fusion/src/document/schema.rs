@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 /// ```
 /// let schema = fusion::document::schema();
 /// assert_eq!(schema["properties"]["version"]["const"], 2);
-/// assert!(schema["$defs"]["Step"]["oneOf"].as_array().is_some_and(|verbs| verbs.len() == 11));
+/// assert!(schema["$defs"]["Step"]["oneOf"].as_array().is_some_and(|verbs| verbs.len() == 12));
 /// ```
 pub fn schema() -> Value {
     let all = operations();
