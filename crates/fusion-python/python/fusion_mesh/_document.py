@@ -264,7 +264,7 @@ class Document:
         ----------
         do : str
             The operation: ``"union"``, ``"difference"``, ``"intersection"``, ``"blend"``, ``"sharpen"``, ``"compose"``, ``"cut"``,
-            ``"detail"``, ``"cluster"``, ``"remesh"`` or ``"pose"``.
+            ``"detail"``, ``"cluster"``, ``"remesh"``, ``"repair"`` or ``"pose"``.
         of : str or list of str, optional
             The shapes it works on, for ``"compose"`` also their loops, ``"name:0"``; the only one that is left where not given.
         edges : Edges, optional
