@@ -2,7 +2,7 @@
 
 use crate::choice_refusal::Refusal as ChoiceRefusal;
 use crate::inherited::Inherited;
-use crate::repair::Refusal as RepairRefusal;
+use crate::repair_refusal::{Refusal as RepairRefusal, remedy};
 use crate::{Error, blend};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -148,7 +148,7 @@ impl Diagnostic {
                 .with("edges", *edges as f64)
                 .with("torn", *torn as f64)
                 .with("unfilled", *unfilled as f64)
-                .remedy("fill the holes, keep them, or close wider cracks"),
+                .remedy(remedy(*unfilled)),
             Error::Blend(blend::Error::Keep(_)) => told(Code::NotByKeep).remedy("let the surface be stitched"),
             _ => told(Code::Impossible),
         }

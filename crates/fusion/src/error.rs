@@ -6,7 +6,7 @@ use crate::cut::Error as CutError;
 use crate::document::Error as DocumentError;
 use crate::invalid::Invalid;
 use crate::operation::OptionError;
-use crate::repair::Refusal as RepairRefusal;
+use crate::repair_refusal::Refusal as RepairRefusal;
 use crate::sharpen::Refusal as SharpenRefusal;
 use glam::DVec3;
 use mesh_core::{Cancelled, NotManifold};

@@ -67,7 +67,7 @@
 //! | `pose/` | models moved |
 //! | `extent.rs`, `outcome.rs`, `validity.rs`, `invalid.rs`, `error.rs` | how every pipeline begins and ends |
 //! | `remeshing.rs`, `region.rs` | remeshing of a surface or a region of it; regions |
-//! | `repair/` | any mesh made a solid, step by step |
+//! | `repair/`, `repair_refusal.rs` | any mesh made a solid, step by step; why none comes out |
 //! | `inherited.rs` | where a result crosses itself because its inputs do |
 //! | `info.rs` | counts, measures and defects of one mesh |
 //! | `listing.rs` | feature curves as every door lists them |
@@ -107,6 +107,7 @@ mod profile_file;
 mod region;
 pub mod remeshing;
 pub mod repair;
+mod repair_refusal;
 mod report;
 pub mod round;
 pub mod sharpen;

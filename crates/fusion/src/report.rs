@@ -169,9 +169,9 @@ impl Report {
 
     /// Takes back the diagnostics of one kind, with their sentences.
     pub(crate) fn forget(&mut self, code: Code) {
-        let told = |message: &String| self.diagnostics.iter().any(|d| d.code == code && d.message == *message);
-        let rest = |told: &dyn Fn(&String) -> bool, all: &[String]| all.iter().filter(|m| !told(m)).cloned().collect();
-        (self.warnings, self.notes) = (rest(&told, &self.warnings), rest(&told, &self.notes));
+        let told: Vec<String> = self.diagnostics.iter().filter(|d| d.code == code).map(|d| d.message.clone()).collect();
+        self.warnings.retain(|message| !told.contains(message));
+        self.notes.retain(|message| !told.contains(message));
         self.diagnostics.retain(|d| d.code != code);
     }
 

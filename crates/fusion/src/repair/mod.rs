@@ -4,13 +4,11 @@
 //! |---|---|
 //! | `step.rs` | the steps, each on its own |
 //! | `work.rs` | a mesh between two steps: its origins, and what was counted |
-//! | `refusal.rs` | why there is no solid |
 
-mod refusal;
 mod step;
 mod work;
 
-pub use refusal::Refusal;
+pub use crate::repair_refusal::Refusal;
 pub use step::Step;
 
 use crate::diagnostic::Code;

@@ -25,11 +25,11 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Does a step, counts what it mended, and returns the count.
-    pub(super) fn step(&mut self, step: Step, watch: &Watch) -> Result<usize, Error> {
+    /// Does a step, and tells what it mended.
+    pub(super) fn step(&mut self, step: Step, watch: &Watch) -> Result<(), Error> {
         let (name, before) = (step.name(), [self.model.mesh.vertex_count(), self.model.mesh.face_count()]);
         let done = self.report.time(name, || step.apply(&self.model, watch))?;
-        let Some(Done { model, origins, mended, left }) = done else { return Ok(0) };
+        let Some(Done { model, origins, mended, left }) = done else { return Ok(()) };
         self.origins =
             origins.compose(&[Stage { origins: &self.origins, faces: &self.model.mesh }], &[&self.part.mesh]);
         self.model = model;
@@ -48,6 +48,6 @@ impl<'a> Work<'a> {
         for warning in left {
             self.report.tell(warning);
         }
-        Ok(count)
+        Ok(())
     }
 }

@@ -113,7 +113,7 @@ pub(crate) fn by_zones(
     let zones: Vec<Vec<Span>> = best.failed.iter().map(|f| f.spans.clone()).collect();
     let each = zones.iter().filter(|_| zones.len() > 1).take(TRIES - tries).cloned();
     let mut best = best.blended;
-    for released in std::iter::once(zones.concat()).chain(each) {
+    for (k, released) in std::iter::once(zones.concat()).chain(each).enumerate() {
         let mut eased = plan.clone();
         for &span in &released {
             eased.release(span);
@@ -121,7 +121,8 @@ pub(crate) fn by_zones(
         match candidate(&mut eased, &mut spent, &shrinking, watch) {
             Ok(made) if made.blended.full_share >= best.full_share - DEARER => {
                 (best, plan) = (made.blended, eased);
-                if released.len() == zones.concat().len() {
+                // All together.
+                if k == 0 {
                     break;
                 }
             }

@@ -12,7 +12,7 @@ pub enum Refusal {
     #[error(
         "the surface is not closed: {loops} boundary loops are left, the longest of {edges} edges, near {at}{}; {}",
         torn_note(*torn),
-        remedy(*unfilled)
+        what_helps(*unfilled)
     )]
     Open {
         /// How many boundary loops.
@@ -28,12 +28,18 @@ pub enum Refusal {
     },
 }
 
-fn remedy(unfilled: usize) -> String {
+fn what_helps(unfilled: usize) -> String {
     match unfilled {
-        0 => "fill the holes (holes: fill), keep them (holes: keep), or close wider cracks (gap)".into(),
-        n => format!(
-            "no surface fills {n} of them without crossing something; keep them (holes: keep), or close wider cracks (gap)"
-        ),
+        0 => remedy(unfilled).into(),
+        n => format!("no surface fills {n} of them without crossing something; {}", remedy(n)),
+    }
+}
+
+/// A way out where holes are left, of which no surface fills so many.
+pub(crate) fn remedy(unfilled: usize) -> &'static str {
+    match unfilled {
+        0 => "fill the holes (holes: fill), keep them (holes: keep), or close wider cracks (gap)",
+        _ => "keep them (holes: keep), or close wider cracks (gap)",
     }
 }
 
