@@ -101,7 +101,7 @@ const REMESH: &str = r#"even = fm.remesh(fm.sphere(1.0), edge_length=0.2)
 even.report["validity"]["closed"]
 True"#;
 const REPAIR: &str = r#"box = fm.box((1, 1, 1))
-soup = fm.Mesh(box.vertices[box.faces].reshape(-1, 3), range(36))
+soup = fm.Mesh(box.vertices[box.faces].reshape(-1, 3), [[3 * f, 3 * f + 1, 3 * f + 2] for f in range(12)])
 round(fm.info(fm.repair(soup))["volume"], 9)
 1.0"#;
 const POSE: &str = r"moved = fm.pose(fm.box((1, 1, 1)), rotate=((0, 0, 1), 45), translate=(0, 0, 2))

@@ -1035,7 +1035,7 @@ def repair(
     --------
     >>> import fusion_mesh as fm
     >>> box = fm.box((1, 1, 1))
-    >>> soup = fm.Mesh(box.vertices[box.faces].reshape(-1, 3), range(36))
+    >>> soup = fm.Mesh(box.vertices[box.faces].reshape(-1, 3), [[3 * f, 3 * f + 1, 3 * f + 2] for f in range(12)])
     >>> round(fm.info(fm.repair(soup))["volume"], 9)
     1.0
     """
